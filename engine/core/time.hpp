@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+
+namespace smokemap {
+
+/// Nanoseconds since the epoch of whoever stamped it: compare only stamps of one clock.
+using Stamp = std::int64_t;
+
+constexpr double to_seconds(Stamp nanoseconds) { return static_cast<double>(nanoseconds) * 1e-9; }
+constexpr Stamp from_seconds(double seconds) {
+  return static_cast<Stamp>(seconds * 1e9 + (seconds < 0 ? -0.5 : 0.5));
+}
+
+/// The wall clock as an interface, so that tests own the time.
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  virtual Stamp now() const = 0;
+};
+
+/// Nanoseconds since 1970 UTC.
+class SystemClock final : public Clock {
+ public:
+  Stamp now() const override;
+};
+
+/// Stands still until told otherwise.
+class ManualClock final : public Clock {
+ public:
+  Stamp now() const override { return now_; }
+  void advance(Stamp by) { now_ += by; }
+
+ private:
+  Stamp now_ = 0;
+};
+
+}  // namespace smokemap
