@@ -1,0 +1,153 @@
+// Reads engine/layers.txt and every #include below engine/: who may include whom is data, and a slip is a failing test.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace smokemap {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Rules {
+  struct Module {
+    enum class Kind { kFloor, kSide, kTop } kind;
+    int floor;
+  };
+  std::map<std::string, Module> modules;
+  struct Home {
+    std::string library, prefix;
+    std::set<std::string> modules;
+  };
+  std::vector<Home> homes;
+
+  bool may_include(const std::string& from, const std::string& to) const {
+    if (from == to) return true;
+    const auto a = modules.at(from), b = modules.at(to);
+    if (a.kind == Module::Kind::kTop) return true;
+    if (b.kind != Module::Kind::kFloor) return false;
+    return a.kind == Module::Kind::kFloor ? b.floor < a.floor : b.floor <= a.floor;
+  }
+};
+
+Rules read_rules(std::istream& in) {
+  Rules rules;
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::string kind, name;
+    if (!(words >> kind)) continue;
+    if (kind == "home") {
+      Rules::Home home;
+      std::string colon;
+      words >> home.library >> home.prefix >> colon;
+      for (std::string module; words >> module;) home.modules.insert(module);
+      rules.homes.push_back(home);
+      continue;
+    }
+    int floor = 0;
+    if (kind != "top") words >> floor;
+    words >> name;
+    rules.modules[name] = {kind == "floor"  ? Rules::Module::Kind::kFloor
+                           : kind == "side" ? Rules::Module::Kind::kSide
+                                            : Rules::Module::Kind::kTop,
+                           floor};
+  }
+  return rules;
+}
+
+/// One complaint a forbidden include in `text`, a source of `module`.
+std::vector<std::string> complaints(const Rules& rules, const std::string& module, const std::string& text) {
+  static const std::regex include(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
+  std::vector<std::string> found;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch match;
+    if (!std::regex_search(line, match, include)) continue;
+    const std::string path = match[2];
+    const std::string folder = path.substr(0, path.find('/'));
+    if (match[1] == "\"" && rules.modules.contains(folder) && !rules.may_include(module, folder))
+      found.push_back(module + " may not include " + path);
+    for (const auto& home : rules.homes)
+      if (path.starts_with(home.prefix) && !home.modules.contains(module))
+        found.push_back(path + " has no home in " + module);
+  }
+  return found;
+}
+
+Rules engine_rules() {
+  std::ifstream in(SMOKEMAP_SOURCE_DIR "/engine/layers.txt");
+  return read_rules(in);
+}
+
+std::string read_file(const fs::path& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+bool is_source(const fs::path& path) { return path.extension() == ".cpp" || path.extension() == ".hpp"; }
+
+TEST(Layering, EveryIncludeOfTheEngineGoesDown) {
+  const Rules rules = engine_rules();
+  for (const auto& entry : fs::recursive_directory_iterator(SMOKEMAP_SOURCE_DIR "/engine")) {
+    if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+    const std::string module = fs::relative(entry.path(), SMOKEMAP_SOURCE_DIR "/engine").begin()->string();
+    ASSERT_TRUE(rules.modules.contains(module)) << module << " is not in engine/layers.txt";
+    for (const std::string& complaint : complaints(rules, module, read_file(entry.path())))
+      ADD_FAILURE() << entry.path() << ": " << complaint;
+  }
+}
+
+TEST(Layering, ServerSpeaksToTheEngineThroughItsFacade) {
+  // The server may know the nouns and the facade, not the methods.
+  const std::set<std::string> methods{"layout", "sketch",       "segmentation", "topology", "features", "slam",
+                                      "acg",    "localization", "matching",     "navigation", "simulation", "robots"};
+  static const std::regex include(R"re(#\s*include\s*"([a-z_]+)/)re");
+  for (const auto& entry : fs::recursive_directory_iterator(SMOKEMAP_SOURCE_DIR "/server")) {
+    if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+    std::istringstream lines(read_file(entry.path()));
+    for (std::string line; std::getline(lines, line);) {
+      std::smatch match;
+      if (std::regex_search(line, match, include))
+        EXPECT_FALSE(methods.contains(match[1])) << entry.path() << ": " << line;
+    }
+  }
+}
+
+TEST(Layering, OnlyThreeSourcesInstantiateBeast) {
+  std::set<std::string> users;
+  for (const auto& entry : fs::recursive_directory_iterator(SMOKEMAP_SOURCE_DIR "/server"))
+    if (entry.path().extension() == ".cpp" && read_file(entry.path()).find("boost/beast") != std::string::npos)
+      users.insert(entry.path().filename());
+  EXPECT_LE(users.size(), 3u) << "Beast costs 15 to 37 s a source";
+}
+
+TEST(Layering, FilesAndFunctionsKeepTheirSize) {
+  for (const char* folder : {"engine", "server", "tests"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(SMOKEMAP_SOURCE_DIR) / folder)) {
+      if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+      const std::string text = read_file(entry.path());
+      EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 400) << entry.path();
+    }
+}
+
+TEST(Rules, RefuseNeighboursAndUpperFloors) {
+  std::istringstream in("floor 0 core\nfloor 1 geometry\nfloor 1 grids\nside 1 tools\ntop app\nhome boost boost/ : app\n");
+  const Rules rules = read_rules(in);
+  EXPECT_TRUE(complaints(rules, "geometry", "#include \"core/result.hpp\"\n#include \"geometry/pose2.hpp\"\n").empty());
+  EXPECT_EQ(complaints(rules, "geometry", "#include \"grids/grid.hpp\"\n").size(), 1u);
+  EXPECT_EQ(complaints(rules, "core", "  #  include \"geometry/pose2.hpp\"\n").size(), 1u);
+  EXPECT_EQ(complaints(rules, "geometry", "#include \"tools/hammer.hpp\"\n").size(), 1u);
+  EXPECT_TRUE(complaints(rules, "tools", "#include \"grids/grid.hpp\"\n").empty());
+  EXPECT_EQ(complaints(rules, "core", "#include <boost/asio.hpp>\n").size(), 1u);
+  EXPECT_TRUE(complaints(rules, "app", "#include <boost/asio.hpp>\n").empty());
+}
+
+}  // namespace
+}  // namespace smokemap
