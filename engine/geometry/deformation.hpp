@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -11,7 +12,8 @@ namespace smokemap {
 
 /// A plan is not rigid. This is the map from one plane to another given by where a set of nodes went:
 /// exact at the nodes, piecewise affine over their Delaunay mesh, continuous, invertible where no triangle folds, and
-/// continued by the best similarity outside. Immutable; copies share their mesh.
+/// continued by the best similarity outside: between the nodes' hull and a box around it the two are blended by further
+/// triangles. Immutable; copies share their mesh. Cost: building O(n^1.5), asking O(1).
 class Deformation {
  public:
   /// The identity.
@@ -30,7 +32,13 @@ class Deformation {
   double sigma_m(const Point2& p_source) const;
   /// Change of length at a point relative to the overall scale: 1 = undistorted. For the local scale map.
   double local_scale(const Point2& p_source) const;
+  /// Best over all nodes; the identity for the identity.
   const Similarity2& similarity() const;
+  /// The mesh as it was built, for drawing a picture warped: nodes before and after, triangles counter-clockwise in the
+  /// source frame. Its outermost ring is a box around the nodes, carried by the similarity. Empty for a bare similarity.
+  const std::vector<Point2>& mesh_source() const;
+  const std::vector<Point2>& mesh_target() const;
+  const std::vector<std::array<int, 3>>& mesh_triangles() const;
   bool folded() const;
 
  private:
