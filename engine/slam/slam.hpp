@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/progress.hpp"
+#include "core/result.hpp"
+#include "maps/laser_scan.hpp"
+#include "maps/odometry.hpp"
+#include "maps/pose_graph.hpp"
+#include "maps/radar_sweep.hpp"
+#include "slam/slam_params.hpp"
+
+namespace smokemap {
+
+/// What became of a scan. A scan without a match still moves the robot: by odometry, or by its last velocity.
+enum class ScanFate : std::uint8_t {
+  kMatched,        ///< pose from the match
+  kFirst,          ///< the first scan defines the map
+  kTooFewPoints,   ///< nearly all beams without information (smoke, open space): pose from the prediction
+  kPoorMatch,      ///< did not fit the map: pose from the prediction, nothing written to the map
+  kDuplicate,      ///< same stamp and same ranges as the scan before: ignored
+};
+const char* to_string(ScanFate fate);
+
+struct ScanOutcome {
+  Stamp stamp = 0;
+  ScanFate fate = ScanFate::kMatched;
+  StampedPose pose;                ///< in map, with covariance since the last node
+  std::optional<int> node;         ///< id of the graph node that was kept for this scan
+  double score = 0;                ///< share of points that found their wall, 0 .. 1
+};
+
+struct SlamCounters {
+  std::int64_t scans = 0;
+  std::int64_t sweeps = 0;
+  std::int64_t odometry = 0;
+  std::int64_t malformed = 0;        ///< rejected by check()
+  std::int64_t duplicates = 0;
+  std::int64_t too_few_points = 0;
+  std::int64_t poor_matches = 0;
+  std::int64_t stamps_back = 0;      ///< scans stamped before the scan before them (still used)
+  std::int64_t jumps = 0;            ///< odometry jumped farther than a robot can drive; bridged by the match
+  std::int64_t without_odometry = 0; ///< predicted from the last velocity
+  std::int64_t lost = 0;             ///< new pieces of map begun because nothing fitted for a while
+  std::int64_t smoke_beams = 0;      ///< lidar echoes the radar saw through
+  std::int64_t loops_tried = 0;
+  std::int64_t loops_closed = 0;
+  std::int64_t loops_rejected = 0;   ///< found, then refused by verification or by the robust solve
+};
+
+/// SLAM of one robot: scans, sweeps and odometry in, poses and a pose graph out. Frames: map = pose of the first scan
+/// (x forward) unless params.T_map_start says otherwise.
+///
+/// Online and incremental: `add_scan` costs a bounded few milliseconds. `optimize` closes loops and solves the graph;
+/// the caller decides when (every second or every few nodes; at the end with `polish`). Synchronous, not thread-safe,
+/// deterministic: the same calls give the same bytes.
+/// Method: thresholds from the prediction's own errors (KISS-ICP), point-to-line Gauss-Newton on oriented surface
+/// points for both sensors (CFEAR for radar), branch-and-bound loop search, robust pose graph, pairwise re-matching.
+class Slam {
+ public:
+  explicit Slam(const SlamParams& params = {});
+  ~Slam();
+  Slam(Slam&&) noexcept;
+  Slam& operator=(Slam&&) noexcept;
+
+  void add_odometry(const Odometry& odometry);
+  /// Fails only for what check(scan) refuses; the trajectory then keeps its length.
+  Result<ScanOutcome> add_scan(const LaserScan& scan);
+  /// The same for a radar turn. When lidar scans come too, the sweep is used to find the lidar's smoke echoes.
+  Result<ScanOutcome> add_sweep(const RadarSweep& sweep);
+
+  /// Searches loops for nodes not searched yet, solves when there is something new. Cheap when nothing is.
+  /// @return true when node poses changed
+  bool optimize(const Progress& progress = {});
+  /// Re-matches every node against its neighbours and solves, a few rounds. For the end of a log or for idle time.
+  void polish(const Progress& progress = {});
+
+  StampedPose latest_pose() const;  ///< in map; covariance since the last node
+  Pose2 T_map_odom() const;         ///< identity without odometry
+  const PoseGraph& graph() const;
+  /// One pose per accepted scan (in radar-only use: per sweep), in order of arrival, by the newest node poses.
+  Trajectory trajectory() const;
+  const SlamCounters& counters() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace smokemap
