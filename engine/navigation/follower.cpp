@@ -1,0 +1,73 @@
+#include "navigation/follower.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/check.hpp"
+#include "geometry/segment2.hpp"
+
+namespace smokemap {
+namespace {
+
+/// The point `ahead_m` further along the path than the foot of `p`.
+Point2 point_ahead(const Path& path, const Point2& p, double ahead_m) {
+  const PathProgress at = progress_on(path, p);
+  Point2 from = closest_point({path.points[at.piece], path.points[at.piece + 1]}, p);
+  for (std::size_t i = at.piece + 1; i < path.points.size(); ++i) {
+    const double length = (path.points[i] - from).norm();
+    if (length >= ahead_m) return from + ahead_m / length * (path.points[i] - from);
+    ahead_m -= length;
+    from = path.points[i];
+  }
+  return path.points.back();
+}
+
+}  // namespace
+
+Result<Ok> FollowerParams::validate() const {
+  return ParamCheck("FollowerParams")
+      .in_range("max_speed_mps", max_speed_mps, 0.01, 3)
+      .in_range("max_turn_rate_radps", max_turn_rate_radps, 0.05, 6)
+      .positive("lookahead_m", lookahead_m)
+      .in_range("turn_in_place_rad", turn_in_place_rad, 0.1, kPi)
+      .positive("robot_radius_m", robot_radius_m)
+      .positive("stop_time_s", stop_time_s)
+      .in_range("stop_points", stop_points, 1, 100)
+      .result();
+}
+
+PathProgress progress_on(const Path& path, const Point2& p) {
+  ENGINE_EXPECT(path.points.size() >= 2);
+  PathProgress best;
+  best.off_path_m = std::numeric_limits<double>::infinity();
+  double after = 0;  // length of the pieces behind the one looked at, from the end
+  for (std::size_t i = path.points.size() - 1; i-- > 0;) {
+    const Segment2 piece{path.points[i], path.points[i + 1]};
+    const Point2 foot = closest_point(piece, p);
+    const double away = (foot - p).norm();
+    if (away < best.off_path_m - 1e-9) best = {i, after + (piece.b - foot).norm(), away};
+    after += piece.length();
+  }
+  return best;
+}
+
+Twist follow(const Path& path, const Pose2& T_map_robot, const FollowerParams& params) {
+  const double remaining = progress_on(path, T_map_robot.translation()).remaining_m;
+  const Point2 ahead = T_map_robot.inverse() * point_ahead(path, T_map_robot.translation(), params.lookahead_m);
+  const double error = std::atan2(ahead.y(), ahead.x());
+  const double turn = std::clamp(2.0 * error, -params.max_turn_rate_radps, params.max_turn_rate_radps);
+  if (std::abs(error) > params.turn_in_place_rad) return {0, turn};
+  const double straight = std::cos(std::min(kPi / 2, 1.5 * std::abs(error)));
+  const double at_end = std::clamp(remaining / 0.6, 0.15, 1.0);
+  return {params.max_speed_mps * std::min(straight, at_end), turn};
+}
+
+bool blocked_ahead(const std::vector<Point2>& obstacles_robot, double speed_mps, const FollowerParams& params) {
+  const double reach = params.robot_radius_m + 0.05 + std::max(0.0, speed_mps) * params.stop_time_s;
+  int count = 0;
+  for (const Point2& p : obstacles_robot)
+    if (p.x() > 0 && p.x() < reach && std::abs(p.y()) < params.robot_radius_m - 0.02) ++count;
+  return count >= params.stop_points;
+}
+
+}  // namespace smokemap
