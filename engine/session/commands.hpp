@@ -54,10 +54,11 @@ struct SetSketchSheet {
   int width_px = 1024;
   int height_px = 768;
 };
+/// Regions are renumbered whenever the drawing changes, so a verdict is kept by the two places that were tapped.
 struct JudgePair {
-  int label_sketch = 0;
-  int label_map = 0;
-  Verdict verdict = Verdict::kConfirmed;
+  Point2 p_sketch_px = Point2::Zero();  ///< inside the region of the sketch
+  Point2 p_layout_px = Point2::Zero();  ///< inside the region of the plan
+  Verdict verdict = Verdict::kConfirmed;  ///< kProposed takes an earlier verdict on these two regions back
 };
 /// Adds the point, or moves and relabels the one with this id.
 struct PlacePoi {

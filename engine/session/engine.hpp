@@ -31,6 +31,8 @@ struct EngineParams {
   Result<Ok> validate() const;
 };
 
+enum class Origin { kLive, kHistory };
+
 /// The facade of everything that understands maps: commands and sensor data in, immutable snapshots out.
 ///
 /// Thread-safe: any thread may call any member. Work happens on the engine's own threads behind queues; sensor queues
@@ -44,9 +46,10 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  /// Applies the command in order. The future snapshot that contains it has a revision of at least the returned one.
-  /// Errors are about the command itself (unknown goal, no plan to place on, forbidden state): nothing changed then.
-  Result<std::uint64_t> apply(const Command& command);
+  /// Applies the command. Errors are about the command itself (unknown goal, no plan to place on): nothing changed then.
+  /// @param origin kHistory while a stored log is replayed: goals do not start robots, and where a robot stood is not
+  ///               believed any more
+  Result<Ok> apply(const Command& command, Origin origin = Origin::kLive);
 
   void add_scan(const LaserScan& scan);
   void add_sweep(const RadarSweep& sweep);
