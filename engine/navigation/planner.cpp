@@ -82,15 +82,19 @@ class Search {
   std::priority_queue<Open, std::vector<Open>, std::greater<>> queue_;
 };
 
-/// Cost of the straight line, or nothing if it leaves drivable ground.
+/// Cost of the straight line, or nothing if it leaves drivable ground or squeezes between two corners.
 std::optional<double> straight_cost(const CostMap& map, const Point2& a, const Point2& b) {
-  const double length = (b - a).norm(), step = 0.5 * map.frame().resolution_m;
+  const double length = (b - a).norm(), step = 0.25 * map.frame().resolution_m;
   const int steps = std::max(1, static_cast<int>(std::ceil(length / step)));
   double cost = 0;
+  Cell before = map.frame().cell_of(a);
   for (int i = 0; i <= steps; ++i) {
     const Cell cell = map.frame().cell_of(a + (b - a) * (static_cast<double>(i) / steps));
     if (!map.drivable(cell)) return std::nullopt;
+    if (cell.x != before.x && cell.y != before.y && !(map.drivable({cell.x, before.y}) && map.drivable({before.x, cell.y})))
+      return std::nullopt;
     cost += map.cost_per_metre(cell) * length / (steps + 1);
+    before = cell;
   }
   return cost;
 }
@@ -171,7 +175,7 @@ Result<Path> plan_path(const CostMap& map, const Point2& start, const Point2& go
   for (const Cell& cell : search.way_to(*to)) way.push_back(map.frame().center_of(cell));
   std::vector<Point2> points = shorten(map, way);
   points.insert(points.begin(), start);
-  if (map.drivable(map.frame().cell_of(goal))) points.back() = goal;
+  if (map.frame().cell_of(goal) == *to) points.push_back(goal);
   return measured(map, std::move(points));
 }
 

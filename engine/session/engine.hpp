@@ -5,38 +5,25 @@
 
 #include "core/result.hpp"
 #include "core/time.hpp"
-#include "maps/laser_scan.hpp"
-#include "maps/odometry.hpp"
-#include "maps/radar_sweep.hpp"
-#include "session/commands.hpp"
-#include "session/snapshot.hpp"
+#include "session/fleet.hpp"
+#include "session/mapper.hpp"
+#include "session/session_core.hpp"
 
 namespace smokemap {
 
-/// The way back to robots: implemented over DDS, by the simulator and by test doubles. Called from the engine's thread;
-/// must not block. The robot's side stops by itself when nothing comes for 0.5 s.
-class RobotCommands {
- public:
-  virtual ~RobotCommands() = default;
-  virtual void drive(const std::string& robot, double speed_mps, double turn_rate_radps) = 0;
-};
-
 struct EngineParams {
-  double tick_s = 0.1;            ///< robots are steered and snapshots made at most this often
-  double merge_period_s = 1.0;    ///< the graph is solved at most this often
-  double match_delay_s = 0.5;     ///< after the last stroke
-  double stale_after_s = 1.0;     ///< robot's link
-  double lost_after_s = 5.0;
-  std::uint64_t seed = 1;
+  double tick_s = 0.1;          ///< robots are steered and snapshots made this often
+  double merge_period_s = 1.0;  ///< the graph is solved at most this often
+  double sketch_delay_s = 0.4;  ///< after the last stroke
+  std::size_t sensor_queue = 256;  ///< items; the oldest are dropped and counted
+  FleetParams fleet;
   Result<Ok> validate() const;
 };
 
-enum class Origin { kLive, kHistory };
-
 /// The facade of everything that understands maps: commands and sensor data in, immutable snapshots out.
 ///
-/// Thread-safe: any thread may call any member. Work happens on the engine's own threads behind queues; sensor queues
-/// are bounded and drop the oldest (counted), commands never drop.
+/// Thread-safe: any thread may call any member. Four threads work behind it: sensing (SLAM), steering (ticks), merging (the
+/// Auto-Complete Graph) and reading the sketch. Sensor queues are bounded and drop the oldest, commands never drop.
 class Engine {
  public:
   using SnapshotListener = std::function<void(std::shared_ptr<const Snapshot>)>;
@@ -47,6 +34,7 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
 
   /// Applies the command. Errors are about the command itself (unknown goal, no plan to place on): nothing changed then.
+  /// An emergency stop reaches the robots before this returns.
   /// @param origin kHistory while a stored log is replayed: goals do not start robots, and where a robot stood is not
   ///               believed any more
   Result<Ok> apply(const Command& command, Origin origin = Origin::kLive);
@@ -55,9 +43,12 @@ class Engine {
   void add_sweep(const RadarSweep& sweep);
   void add_odometry(const Odometry& odometry);
 
+  /// The latest; never null.
   std::shared_ptr<const Snapshot> snapshot() const;
-  /// Called from the engine's thread for every new snapshot; must be quick.
+  /// Called from the steering thread for every new snapshot; must be quick. One listener; set before data comes in.
   void on_snapshot(SnapshotListener listener);
+  /// Sensor items dropped because the queue was full.
+  std::size_t dropped() const;
 
  private:
   class Impl;

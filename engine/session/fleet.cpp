@@ -1,0 +1,171 @@
+#include "session/fleet.hpp"
+
+#include <algorithm>
+
+#include "core/check.hpp"
+
+namespace smokemap {
+
+Result<Ok> FleetParams::validate() const {
+  if (const auto valid = pilot.validate(); !valid) return valid.error();
+  return ParamCheck("FleetParams")
+      .positive("stale_after_s", stale_after_s)
+      .in_range("lost_after_s", lost_after_s, stale_after_s, 3600)
+      .in_range("explore_pause_s", explore_pause_s, 0, 60)
+      .result();
+}
+
+Fleet::Robot& Fleet::robot_of(const std::string& id) {
+  const auto it = robots_.find(id);
+  if (it != robots_.end()) return it->second;
+  Robot robot{RobotStatus{}, Pilot(params_.pilot), {}, {}, {}, {}, {}, 0, false};
+  robot.status.id = id;
+  return robots_.emplace(id, std::move(robot)).first->second;
+}
+
+void Fleet::heard(const std::string& robot, Stamp now) { robot_of(robot).status.last_heard = now; }
+
+void Fleet::report(const PoseReport& report) {
+  Robot& robot = robot_of(report.robot);
+  robot.T_slam_robot = report.T_slam_robot;
+  robot.obstacles_robot = report.obstacles_robot;
+  robot.ever_localized = robot.ever_localized || report.localized;
+  robot.status.sigma_m = report.sigma_m;
+  robot.status.sigma_rad = report.sigma_rad;
+  robot.status.localized = report.localized;
+  robot.status.speed_mps = report.speed_mps;
+  robot.status.T_map_robot = robot.T_map_slam * robot.T_slam_robot;
+}
+
+void Fleet::set_correction(const std::string& id, const Pose2& T_map_slam) {
+  Robot& robot = robot_of(id);
+  robot.T_map_slam = T_map_slam;
+  robot.status.T_map_robot = robot.T_map_slam * robot.T_slam_robot;
+}
+
+void Fleet::stop_now(const std::string& id) {
+  for (auto& [name, robot] : robots_)
+    if (id.empty() || name == id) commands_->drive(name, 0, 0);
+}
+
+void Fleet::tick(Stamp now, Whiteboard& board, const Carrier& carrier) {
+  for (auto& [id, robot] : robots_) {
+    RobotStatus& status = robot.status;
+    const double age_s = to_seconds(now - status.last_heard);
+    status.link = age_s <= params_.stale_after_s  ? LinkQuality::kFresh
+                  : age_s <= params_.lost_after_s ? LinkQuality::kStale
+                                                  : LinkQuality::kLost;
+    status.stopped = board.is_stopped(id);
+    status.exploring = board.explores(id);
+    steer(robot, now, board, carrier);
+  }
+}
+
+void Fleet::steer(Robot& robot, Stamp now, Whiteboard& board, const Carrier& carrier) {
+  RobotStatus& status = robot.status;
+  robot.last = {};
+  status.note.clear();
+  if (status.stopped) {
+    commands_->drive(status.id, 0, 0);
+    status.note = "emergency stop";
+    return;
+  }
+  if (status.link == LinkQuality::kLost) {
+    status.note = "no signal from the robot";
+    return;
+  }
+  if (!robot.ever_localized) {
+    status.note = "the robot does not know where it is yet";
+    return;
+  }
+  robot.pilot.set_map(map_);
+  Goal* goal = next_goal(robot, board, carrier);
+  take_target(robot, now, goal, carrier, status.exploring);
+  robot.last = robot.pilot.step(now, status.T_map_robot, robot.obstacles_robot);
+  commands_->drive(status.id, robot.last.twist.speed_mps, robot.last.twist.turn_rate_radps);
+  settle_goal(robot, goal);
+  status.path_map = robot.last.path.points;
+  if (status.note.empty()) status.note = robot.last.reason;
+  if (!goal && robot.pilot.target() &&
+      (robot.last.state == PilotState::kArrived || robot.last.state == PilotState::kGivenUp)) {
+    robot.avoided.push_back(*robot.pilot.target());
+    robot.pilot.set_target(std::nullopt);
+    robot.idle_since = now;
+  }
+}
+
+Goal* Fleet::next_goal(Robot& robot, Whiteboard& board, const Carrier& carrier) {
+  for (Goal& goal : board.goals) {
+    if (goal.robot != robot.status.id || is_final(goal.state)) continue;
+    const Transferred place = carrier.to_map(goal.place);
+    if (place.p) return &goal;
+    goal.state = GoalState::kRefused;
+    goal.reason = place.reason;
+  }
+  return nullptr;
+}
+
+void Fleet::take_target(Robot& robot, Stamp now, Goal* goal, const Carrier& carrier, bool explores) {
+  if (goal) {
+    const Point2 p = *carrier.to_map(goal->place).p;
+    if (robot.status.goal_id == goal->id && robot.pilot.target()) {
+      robot.pilot.move_target(p);
+      return;
+    }
+    robot.status.goal_id = goal->id;
+    robot.pilot.set_target(p, goal->heading_rad);
+    goal->state = GoalState::kSent;
+    return;
+  }
+  if (!robot.status.goal_id.empty()) {  // the goal is done, cancelled or gone
+    robot.status.goal_id.clear();
+    robot.pilot.set_target(std::nullopt);
+    robot.idle_since = now;
+  }
+  if (!explores) {
+    robot.pilot.set_target(std::nullopt);
+    return;
+  }
+  if (robot.pilot.target() || !map_ || to_seconds(now - robot.idle_since) < params_.explore_pause_s) return;
+  robot.idle_since = now;
+  if (const auto frontier = best_frontier(*map_, robot.status.T_map_robot.translation(), robot.avoided, params_.frontier))
+    robot.pilot.set_target(frontier->target);
+  else
+    robot.status.note = "everything that can be reached was seen";
+}
+
+void Fleet::settle_goal(Robot& robot, Goal* goal) {
+  if (!goal) return;
+  switch (robot.last.state) {
+    case PilotState::kArrived: goal->state = GoalState::kArrived, goal->reason.clear(); break;
+    case PilotState::kGivenUp:
+      goal->state = goal->state == GoalState::kSent ? GoalState::kRefused : GoalState::kFailed;
+      goal->reason = robot.last.reason;
+      break;
+    case PilotState::kDriving: goal->state = GoalState::kDriving, goal->reason.clear(); break;
+    default: goal->reason = robot.last.reason; break;
+  }
+}
+
+std::vector<RobotStatus> Fleet::status() const {
+  std::vector<RobotStatus> all;
+  for (const auto& [id, robot] : robots_) all.push_back(robot.status);
+  return all;
+}
+
+GoalView Fleet::view(const Goal& goal, const Carrier& carrier) const {
+  GoalView view{goal, carrier.to_map(goal.place), 0, 0};
+  const auto it = robots_.find(goal.robot);
+  if (it == robots_.end() || it->second.status.goal_id != goal.id || is_final(goal.state)) return view;
+  view.remaining_m = it->second.last.remaining_m;
+  view.eta_s = view.remaining_m / (0.8 * params_.pilot.follower.max_speed_mps);
+  return view;
+}
+
+std::optional<Pose2> Fleet::T_slam_robot(const std::string& id) const {
+  const auto it = robots_.find(id);
+  if (it == robots_.end() || !it->second.ever_localized) return std::nullopt;
+  return it->second.T_slam_robot;
+}
+
+}  // namespace smokemap

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/time.hpp"
+#include "navigation/frontier.hpp"
+#include "navigation/pilot.hpp"
+#include "session/carrier.hpp"
+#include "session/snapshot.hpp"
+#include "session/whiteboard.hpp"
+
+namespace smokemap {
+
+/// The way back to robots: implemented over DDS, by the simulator and by test doubles. Must not block.
+/// The robot's side stops by itself when nothing comes for 0.5 s.
+class RobotCommands {
+ public:
+  virtual ~RobotCommands() = default;
+  virtual void drive(const std::string& robot, double speed_mps, double turn_rate_radps) = 0;
+};
+
+struct FleetParams {
+  PilotParams pilot;
+  FrontierParams frontier;
+  double stale_after_s = 1.0;
+  double lost_after_s = 5.0;
+  double explore_pause_s = 1.0;  ///< after a place was reached, before the next is chosen
+  Result<Ok> validate() const;
+};
+
+/// A robot's own account of itself, from SLAM.
+struct PoseReport {
+  std::string robot;
+  Pose2 T_slam_robot;
+  double sigma_m = 0;
+  double sigma_rad = 0;
+  bool localized = false;
+  double speed_mps = 0;
+  std::vector<Point2> obstacles_robot;  ///< echoes of the latest scan that the scan before confirms
+};
+
+/// Robots, their goals and their exploring. No threads, no clock of its own.
+class Fleet {
+ public:
+  Fleet(const FleetParams& params, std::shared_ptr<RobotCommands> commands)
+      : params_(params), commands_(std::move(commands)) {}
+
+  void heard(const std::string& robot, Stamp now);
+  void report(const PoseReport& report);
+  void set_map(std::shared_ptr<const CostMap> map) { map_ = std::move(map); }
+  /// The robot whose frame is the map's gets the merge's correction.
+  void set_correction(const std::string& robot, const Pose2& T_map_slam);
+
+  /// Ten times a second: chooses what each robot does, drives it, moves goals through their states.
+  void tick(Stamp now, Whiteboard& board, const Carrier& carrier);
+  /// At once, before anything else.
+  void stop_now(const std::string& robot);
+
+  std::vector<RobotStatus> status() const;
+  /// Distance and time to go of the goal that a robot drives to; zeros for others.
+  GoalView view(const Goal& goal, const Carrier& carrier) const;
+  /// Where SLAM has the robot now; nothing for a robot never localised.
+  std::optional<Pose2> T_slam_robot(const std::string& robot) const;
+
+ private:
+  struct Robot {
+    RobotStatus status;
+    Pilot pilot;
+    Pose2 T_slam_robot;
+    Pose2 T_map_slam;
+    std::vector<Point2> obstacles_robot;
+    PilotOutput last;
+    std::vector<Point2> avoided;  ///< frontiers that could not be reached
+    Stamp idle_since = 0;
+    bool ever_localized = false;
+  };
+
+  void steer(Robot& robot, Stamp now, Whiteboard& board, const Carrier& carrier);
+  /// The goal to drive to now; refuses, with the reason, those that have no place.
+  Goal* next_goal(Robot& robot, Whiteboard& board, const Carrier& carrier);
+  void take_target(Robot& robot, Stamp now, Goal* goal, const Carrier& carrier, bool explores);
+  void settle_goal(Robot& robot, Goal* goal);
+  Robot& robot_of(const std::string& id);
+
+  FleetParams params_;
+  std::shared_ptr<RobotCommands> commands_;
+  std::shared_ptr<const CostMap> map_;
+  std::map<std::string, Robot> robots_;
+};
+
+}  // namespace smokemap

@@ -1,0 +1,96 @@
+#include "session/session_core.hpp"
+
+namespace smokemap {
+namespace {
+
+std::shared_ptr<const SketchView> empty_sketch() {
+  static const auto kEmpty = std::make_shared<const SketchView>();
+  return kEmpty;
+}
+
+}  // namespace
+
+SessionCore::SessionCore(const FleetParams& params, std::shared_ptr<RobotCommands> commands)
+    : fleet_(params, commands), commands_(std::move(commands)) {}
+
+Result<Ok> SessionCore::apply(const Command& command, Origin origin) {
+  const auto layout_before = board_.layout;
+  const int frame_before = board_.revisions.layout_frame;
+  if (const auto ok = board_.apply(command); !ok) return ok;
+  if (board_.revisions.layout_frame != frame_before) start_.reset(), start_is_old_ = false;
+  if (const auto* start = std::get_if<SetStart>(&command)) return note_start(*start, origin);
+  if (const auto* stop = std::get_if<EmergencyStop>(&command); stop && stop->engaged) fleet_.stop_now(stop->robot);
+  if (const auto* set = std::get_if<SetGoal>(&command); set && origin == Origin::kHistory) {
+    Goal* goal = board_.find_goal(set->goal.id);
+    if (goal && !is_final(goal->state)) {
+      goal->state = GoalState::kCancelled;
+      goal->reason = "the server was restarted";
+    }
+  }
+  return Ok{};
+}
+
+Result<Ok> SessionCore::note_start(const SetStart& start, Origin origin) {
+  if (origin == Origin::kHistory) {
+    board_.start.reset();
+    start_is_old_ = true;
+    return Ok{};
+  }
+  const Point2 p_layout = board_.layout->layout.frame().to_metres(start.p_layout_px);
+  const Pose2 T_layout_robot(p_layout, start.heading_rad);
+  // The robot may have moved since its first pose, which is the origin of the map.
+  const Pose2 T_map_robot = fleet_.T_slam_robot(start.robot).value_or(Pose2());
+  start_ = PlanStart{T_layout_robot * T_map_robot.inverse(), 0.3, 0.08};
+  start_is_old_ = false;
+  return Ok{};
+}
+
+void SessionCore::tick(Stamp now) { fleet_.tick(now, board_, Carrier(board_, *merged_, sketch_)); }
+
+MergeInput SessionCore::merge_input(std::shared_ptr<const PoseGraph> graph) const {
+  return {std::move(graph), board_.layout, start_, board_.anchors, board_.wall_verdicts};
+}
+
+void SessionCore::take(const MergeResult& result, const std::string& map_maker) {
+  merged_ = result.merged;
+  sensed_ = result.sensed;
+  merge_complaint_ = result.complaint;
+  fleet_.set_map(result.cost_map);
+  if (!map_maker.empty()) fleet_.set_correction(map_maker, result.T_map_slam);
+}
+
+SessionCore::SketchOrder SessionCore::sketch_order() const {
+  return {board_.revisions.sketch, board_.sketch(), board_.layout, board_.pair_verdicts};
+}
+
+std::vector<Alert> SessionCore::alerts() const {
+  std::vector<Alert> alerts;
+  if (start_is_old_ && !start_)
+    alerts.push_back({"old-start", "Where the robot stands on the plan is only known from before the restart: say it again.", true});
+  if (board_.layout && !board_.layout->layout.scale)
+    alerts.push_back({"no-scale", "The plan has no scale yet: a guess is used.", false});
+  if (merged_->fit.verdict == "does not fit")
+    alerts.push_back({"no-fit", "This plan does not seem to fit this building.", true});
+  if (!merge_complaint_.empty())
+    alerts.push_back({"merge", "The map could not be corrected just now: " + merge_complaint_, false});
+  return alerts;
+}
+
+Snapshot SessionCore::snapshot(Stamp now) const {
+  Snapshot snapshot;
+  snapshot.time = now;
+  snapshot.layout = board_.layout;
+  snapshot.merged = merged_;
+  snapshot.sensed = sensed_;
+  snapshot.sketch = sketch_.sketch ? sketch_.sketch : empty_sketch();
+  snapshot.match = sketch_.match;
+  snapshot.robots = fleet_.status();
+  const Carrier carrier(board_, *merged_, sketch_);
+  for (const auto& [id, poi] : board_.pois)
+    if (!poi.removed) snapshot.pois.push_back({poi, carrier.to_map(poi.place)});
+  for (const Goal& goal : board_.goals) snapshot.goals.push_back(fleet_.view(goal, carrier));
+  snapshot.alerts = alerts();
+  return snapshot;
+}
+
+}  // namespace smokemap

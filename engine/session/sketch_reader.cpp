@@ -1,0 +1,114 @@
+#include "session/sketch_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "segmentation/outline.hpp"
+
+namespace smokemap {
+namespace {
+
+constexpr double kPlanLongSidePx = 1100;  // enough for rooms, quick enough for taps
+constexpr int kTapReachPx = 12;
+
+std::vector<RegionView> views_of(const Segmentation& segmentation, double scale) {
+  std::vector<RegionView> views;
+  for (const Region& region : segmentation.regions) {
+    RegionView view{region.label, region_outline(segmentation, region.label), region.kind};
+    for (Point2& p : view.outline_px) p /= scale;
+    if (view.outline_px.size() >= 3) views.push_back(std::move(view));
+  }
+  return views;
+}
+
+/// Verdicts by place -> verdicts by label, the latest word on a pair winning.
+std::vector<RegionPair> by_label(const std::vector<PairVerdict>& verdicts, const Segmentation& sketch, const PlanRegions& plan) {
+  std::map<std::pair<int, int>, Verdict> latest;
+  for (const PairVerdict& verdict : verdicts) {
+    const int a = label_at(sketch, verdict.p_sketch_px, kTapReachPx);
+    const int b = label_at(plan.segmentation, verdict.p_layout_px * plan.pixels_per_layout_px, kTapReachPx);
+    if (a > 0 && b > 0) latest[{a, b}] = verdict.verdict;
+  }
+  std::vector<RegionPair> pairs;
+  for (const auto& [labels, verdict] : latest)
+    if (verdict != Verdict::kProposed) pairs.push_back({labels.first, labels.second, 1.0, verdict});
+  return pairs;
+}
+
+/// Confirmed places also bind as pins: what was tapped is the same spot, roughly.
+std::vector<Pin> pins_of(const std::vector<PairVerdict>& verdicts, double scale) {
+  std::vector<Pin> pins;
+  for (const PairVerdict& verdict : verdicts)
+    if (verdict.verdict == Verdict::kConfirmed) pins.push_back({verdict.p_sketch_px, verdict.p_layout_px * scale});
+  return pins;
+}
+
+}  // namespace
+
+int label_at(const Segmentation& segmentation, const Point2& p_px, int reach_px) {
+  if (!p_px.allFinite()) return 0;
+  const cv::Mat& labels = segmentation.labels;
+  const double limit = 1e6;
+  if (p_px.cwiseAbs().maxCoeff() > limit) return 0;
+  const int cx = static_cast<int>(std::lround(p_px.x())), cy = static_cast<int>(std::lround(p_px.y()));
+  int best = 0, best_squared = reach_px * reach_px + 1;
+  for (int dy = -reach_px; dy <= reach_px; ++dy)
+    for (int dx = -reach_px; dx <= reach_px; ++dx) {
+      const int x = cx + dx, y = cy + dy, squared = dx * dx + dy * dy;
+      if (x < 0 || y < 0 || x >= labels.cols || y >= labels.rows || squared >= best_squared) continue;
+      if (const int label = labels.at<std::uint16_t>(y, x)) best = label, best_squared = squared;
+    }
+  return best;
+}
+
+const PlanRegions* SketchReader::plan_regions(const std::shared_ptr<const LayoutView>& layout) {
+  if (layout == layout_) return plan_ ? &*plan_ : nullptr;
+  layout_ = layout;
+  plan_.reset();
+  if (!layout) return nullptr;
+  PlanRegions plan;
+  plan.pixels_per_layout_px = std::min(1.0, kPlanLongSidePx / std::max(layout->layout.width_px, layout->layout.height_px));
+  const auto free_space = layout_free_space(layout->layout, plan.pixels_per_layout_px);
+  if (!free_space) return nullptr;
+  auto segmentation = segment(*free_space, segmentation_params(MapKind::kLayout));
+  if (!segmentation) return nullptr;
+  plan.segmentation = std::move(*segmentation);
+  plan.views = views_of(plan.segmentation, plan.pixels_per_layout_px);
+  plan_ = std::move(plan);
+  return &*plan_;
+}
+
+SketchReading SketchReader::read(const SketchMap& sketch, const std::shared_ptr<const LayoutView>& layout,
+                                 const std::vector<PairVerdict>& verdicts) {
+  SketchReading reading;
+  auto view = std::make_shared<SketchView>();
+  view->sketch = sketch;
+  reading.sketch = view;
+  const PlanRegions* plan = plan_regions(layout);
+  auto match_view = std::make_shared<MatchView>();
+  if (plan) match_view->map_regions = plan->views, reading.match = match_view;
+  const auto give_up = [&](const std::string& why) {
+    view->warning = sketch.strokes.empty() ? "" : why;
+    reading.no_transfer = why;
+    return reading;
+  };
+  if (sketch.strokes.empty()) return give_up("nothing is drawn yet");
+  const auto clean = clean_sketch(sketch, {});
+  if (!clean) return give_up(clean.error().message);
+  view->gaps = clean->gaps;
+  if (!clean->warnings.empty()) view->warning = clean->warnings.front();
+  const auto regions = segment(clean->free_space, segmentation_params(MapKind::kSketch));
+  if (!regions) return give_up(regions.error().message);
+  view->regions = views_of(*regions, 1.0);
+  if (!plan) return give_up(layout ? "no rooms were found on the plan" : "there is no plan to match the sketch with");
+  const std::vector<Pin> pins = pins_of(verdicts, plan->pixels_per_layout_px);
+  const auto matching = match(*regions, plan->segmentation, pins, by_label(verdicts, *regions, *plan));
+  if (!matching) return give_up(matching.error().message);
+  match_view->matching = *matching;
+  reading.to_plan = std::make_shared<const PointTransfer>(*regions, plan->segmentation, *matching, pins);
+  reading.pixels_per_layout_px = plan->pixels_per_layout_px;
+  return reading;
+}
+
+}  // namespace smokemap
