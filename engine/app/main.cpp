@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   Outcome outcome;
   app.add_flag("--json", outcome.json, "also print errors as JSON on standard output");
+  add_layout(app, outcome);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

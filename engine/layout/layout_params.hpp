@@ -20,6 +20,7 @@ struct LayoutParams {
 
   // walls
   double min_wall_share = 0.008;     ///< shorter pieces are text, furniture or noise
+  double max_wall_share = 0.035;     ///< thicker is no wall: frames, blocks of colour
   double thin_ratio = 0.30;          ///< of the main thickness: below are door leaves, treads, furniture
   double merge_angle_deg = 3.0;      ///< collinear pieces become one wall
   double snap_walls = 1.6;           ///< loose ends within this many thicknesses of a crossing are joined to it

@@ -1,0 +1,265 @@
+// Idea: an edge knows where a wall is and how it runs; the ink behind it knows how thick it is and how far it goes. Edges come
+// from the line segment detector. From each, rays into the dark side give the width, which places the centre line; the centre
+// line is then walked, pixel by pixel, while the ink's cross-section stays what it was. A map of claimed pixels keeps the
+// second edge of the same wall from making a second stroke.
+#include "layout/ink_stroke.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+
+namespace smokemap {
+namespace {
+
+struct Ink {
+  const cv::Mat& darkness;
+  int threshold;
+  double cap_px;  ///< widest cross-section that is looked at
+
+  int at(const Point2& p) const {
+    const int x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
+    if (x < 0 || y < 0 || x >= darkness.cols || y >= darkness.rows) return 0;
+    return darkness.at<uchar>(y, x);
+  }
+  bool inked(const Point2& p) const { return at(p) >= threshold; }
+};
+
+struct CrossSection {
+  double middle = 0;  ///< offset of the ink's middle along the normal
+  double width = 0;
+};
+
+/// The run of ink across the point, which may lie up to `slack` beside it.
+std::optional<CrossSection> cross_section(const Ink& ink, const Point2& p, const Point2& normal, double slack) {
+  double start = 0;
+  bool found = ink.inked(p);
+  for (double s = 1; !found && s <= slack; s += 1) {
+    for (const double sign : {1.0, -1.0})
+      if (!found && ink.inked(p + sign * s * normal)) found = true, start = sign * s;
+  }
+  if (!found) return std::nullopt;
+  double low = start, high = start;
+  while (high - start < ink.cap_px && ink.inked(p + (high + 1) * normal)) high += 1;
+  while (start - low < ink.cap_px && ink.inked(p + (low - 1) * normal)) low -= 1;
+  return CrossSection{0.5 * (low + high), high - low + 1};
+}
+
+struct Seed {
+  Segment2 axis;
+  double width = 0;
+};
+
+/// Width of the ink behind an edge, and the centre line it belongs to.
+std::optional<Seed> seed_behind(const Ink& ink, const Segment2& edge) {
+  const double length = edge.length();
+  const Point2 u = edge.direction();
+  Point2 n = edge.normal();
+  std::vector<double> widths, middles;
+  double left = 0, right = 0;
+  for (double s = 0.5; s < length; s += 2) {
+    const Point2 p = edge.a + s * u;
+    left += ink.at(p + 2 * n);
+    right += ink.at(p - 2 * n);
+  }
+  if (right > left) n = -n;
+  for (double s = 0.5; s < length; s += 2) {
+    const Point2 p = edge.a + s * u;
+    double begin = -2;
+    while (begin <= 3 && !ink.inked(p + begin * n)) begin += 1;
+    if (begin > 3) continue;
+    double end = begin;
+    while (end - begin <= ink.cap_px && ink.inked(p + (end + 1) * n)) end += 1;
+    if (end - begin > ink.cap_px) continue;
+    widths.push_back(end - begin + 1);
+    middles.push_back(0.5 * (begin + end));
+  }
+  if (widths.size() < 2 || static_cast<double>(widths.size()) * 4 < length) return std::nullopt;
+  const auto middle_of = [](std::vector<double>& values) {
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), nth, values.end());
+    return *nth;
+  };
+  const double offset = middle_of(middles);
+  return Seed{{edge.a + offset * n, edge.b + offset * n}, middle_of(widths)};
+}
+
+struct Walk {
+  double low = 0, high = 0;  ///< clean extent along the axis, from its point a
+  std::vector<Point2> middles;
+  int present = 0;
+};
+
+/// Follows the axis both ways while the cross-section holds. Wider ink (a crossing wall) is walked through, not counted.
+Walk walk_axis(const Ink& ink, const Segment2& axis, double width) {
+  const Point2 u = axis.direction(), n = axis.normal();
+  const double length = axis.length();
+  const double slack = std::max(1.0, 0.35 * width);
+  const double gap_limit = 2 + 0.3 * width;
+  Walk walk;
+  walk.low = walk.high = 0.5 * length;
+  const auto look = [&](double s, double& gap, double& edge, double& wide) {
+    const auto cut = cross_section(ink, axis.a + s * u, n, slack);
+    if (!cut) return gap += 1, true;
+    gap = 0;
+    const bool clean = cut->width <= 1.5 * width + 1 && cut->width >= 0.5 * width - 1 && std::abs(cut->middle) <= slack + 0.5;
+    if (!clean) return wide += 1, true;
+    wide = 0;
+    edge = s;
+    walk.present += 1;
+    walk.middles.push_back(axis.a + s * u + cut->middle * n);
+    return true;
+  };
+  for (const double sign : {1.0, -1.0}) {
+    double gap = 0, wide = 0;
+    double& edge = sign > 0 ? walk.high : walk.low;
+    for (double s = 0.5 * length + (sign > 0 ? 0 : -1);; s += sign) {
+      const bool inside = s >= 0 && s <= length;
+      look(s, gap, edge, wide);
+      if (!inside && (gap > gap_limit || wide > ink.cap_px)) break;
+      if (inside && gap > 3 * gap_limit) break;
+      if (s < -20000 || s > 20000) break;
+    }
+  }
+  return walk;
+}
+
+/// Total least squares through the middles.
+std::optional<Segment2> fit_axis(const std::vector<Point2>& points, const Point2& direction) {
+  if (points.size() < 4) return std::nullopt;
+  Point2 mean = Point2::Zero();
+  for (const auto& p : points) mean += p;
+  mean /= static_cast<double>(points.size());
+  double xx = 0, xy = 0, yy = 0;
+  for (const auto& p : points) {
+    const Point2 d = p - mean;
+    xx += d.x() * d.x(), xy += d.x() * d.y(), yy += d.y() * d.y();
+  }
+  const double heading = 0.5 * std::atan2(2 * xy, xx - yy);
+  Point2 u(std::cos(heading), std::sin(heading));
+  if (u.dot(direction) < 0) u = -u;
+  double low = 1e18, high = -1e18;
+  for (const auto& p : points) {
+    const double s = (p - mean).dot(u);
+    low = std::min(low, s), high = std::max(high, s);
+  }
+  return Segment2{mean + low * u, mean + high * u};
+}
+
+/// Thickness by summed darkness, so that a blurred line stays thin; and how dark the axis is.
+void measure(const Ink& ink, InkStroke& stroke, double width) {
+  const Point2 u = stroke.axis.direction(), n = stroke.axis.normal();
+  const double length = stroke.length();
+  std::vector<double> sums;
+  double dark = 0;
+  int samples = 0;
+  const double step = std::max(1.0, length / 200);
+  for (double s = 0.5; s < length; s += step) {
+    const Point2 p = stroke.axis.a + s * u;
+    const auto cut = cross_section(ink, p, n, std::max(1.0, 0.35 * width));
+    samples += 1;
+    if (!cut) continue;
+    dark += ink.at(p + cut->middle * n) / 255.0;
+    if (cut->width > 1.5 * width + 1) continue;
+    double sum = 0, peak = 1;
+    for (double o = cut->middle - 0.5 * cut->width - 2; o <= cut->middle + 0.5 * cut->width + 2; o += 1) {
+      const double value = ink.at(p + o * n);
+      sum += value;
+      peak = std::max(peak, value);
+    }
+    sums.push_back(sum / peak);
+  }
+  stroke.thickness_px = width;
+  if (!sums.empty()) {
+    const auto nth = sums.begin() + static_cast<std::ptrdiff_t>(sums.size() / 2);
+    std::nth_element(sums.begin(), nth, sums.end());
+    stroke.thickness_px = *nth;
+  }
+  stroke.darkness = samples ? dark / samples : 0;
+}
+
+class Tracer {
+ public:
+  Tracer(const Ink& ink, const LayoutParams& params) : ink_(ink), params_(params), claimed_(ink.darkness.size(), CV_16UC1, cv::Scalar(0)) {}
+
+  void add(const Segment2& edge) {
+    if (strokes_.size() >= 65000) return;
+    const auto seed = seed_behind(ink_, edge);
+    if (!seed || taken(seed->axis)) return;
+    Segment2 axis = seed->axis;
+    Walk walk = walk_axis(ink_, axis, seed->width);
+    if (const auto fitted = fit_axis(walk.middles, axis.direction())) {
+      axis = *fitted;
+      if (axis.length() < 1) return;
+      walk = walk_axis(ink_, axis, seed->width);
+    }
+    const double length = walk.high - walk.low;
+    if (length < 3 || taken({axis.a + walk.low * axis.direction(), axis.a + walk.high * axis.direction()})) return;
+    InkStroke stroke;
+    stroke.axis = {axis.a + walk.low * axis.direction(), axis.a + walk.high * axis.direction()};
+    stroke.coverage = std::min(1.0, walk.present / (length + 1));
+    measure(ink_, stroke, seed->width);
+    claim(stroke, seed->width);
+    strokes_.push_back(stroke);
+  }
+  std::vector<InkStroke> take() { return std::move(strokes_); }
+
+ private:
+  /// Most of it lies on a stroke of like direction.
+  bool taken(const Segment2& axis) const {
+    const double length = axis.length();
+    int inside = 0, all = 0;
+    for (double s = 0.5; s < length; s += 2, ++all) {
+      const Point2 p = axis.a + s * axis.direction();
+      const int x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
+      if (x < 0 || y < 0 || x >= claimed_.cols || y >= claimed_.rows) continue;
+      const int owner = claimed_.at<ushort>(y, x);
+      if (owner == 0) continue;
+      const double turn = line_angle_between(strokes_[static_cast<std::size_t>(owner - 1)].axis.heading(), axis.heading());
+      if (turn < radians(4 * params_.merge_angle_deg)) inside += 1;
+    }
+    return all == 0 || inside * 2 > all;
+  }
+  void claim(const InkStroke& stroke, double width) {
+    const auto px = [](const Point2& p) { return cv::Point(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))); };
+    cv::line(claimed_, px(stroke.axis.a), px(stroke.axis.b), cv::Scalar(static_cast<double>(strokes_.size() + 1)),
+             static_cast<int>(std::lround(width)) + 2);
+  }
+
+  const Ink& ink_;
+  const LayoutParams& params_;
+  cv::Mat claimed_;  ///< CV_16UC1: 1 + index of the stroke
+  std::vector<InkStroke> strokes_;
+};
+
+/// Edges of the whole picture, longest first. Strips overlap, so that no edge is cut short unseen.
+std::vector<Segment2> find_edges(const cv::Mat& darkness) {
+  const int strip = 640, overlap = 40;
+  const auto detector = cv::createLineSegmentDetector(cv::LSD_REFINE_NONE);
+  std::vector<Segment2> edges;
+  for (int y = 0; y < darkness.rows; y += strip) {
+    const int top = std::max(0, y - overlap), bottom = std::min(darkness.rows, y + strip + overlap);
+    std::vector<cv::Vec4f> lines;
+    if (bottom - top < 8 || darkness.cols < 8) break;
+    detector->detect(darkness.rowRange(top, bottom), lines);
+    const Point2 shift(0, top);
+    for (const auto& l : lines) edges.push_back({Point2(l[0], l[1]) + shift, Point2(l[2], l[3]) + shift});
+  }
+  std::stable_sort(edges.begin(), edges.end(), [](const Segment2& a, const Segment2& b) { return a.length() > b.length(); });
+  return edges;
+}
+
+}  // namespace
+
+std::vector<InkStroke> trace_strokes(const cv::Mat& darkness, int threshold, const LayoutParams& params) {
+  const double side = std::max(darkness.rows, darkness.cols);
+  const Ink ink{darkness, threshold, params.max_wall_share * side};
+  Tracer tracer(ink, params);
+  for (const auto& edge : find_edges(darkness)) {
+    if (edge.length() < 5) break;
+    tracer.add(edge);
+  }
+  return tracer.take();
+}
+
+}  // namespace smokemap

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "core/result.hpp"
+#include "layout/layout_params.hpp"
+
+namespace smokemap {
+
+/// Any picture as CV_8UC3: gray is spread, alpha laid over white, 16 bit cut to 8.
+/// kInvalidArgument for an empty picture or other depths and channel counts.
+Result<cv::Mat> as_bgr(const cv::Mat& picture);
+
+/// The picture at the size at which it is read. work_px = scale * (picture_px + 0.5) - 0.5.
+struct WorkPicture {
+  cv::Mat bgr;
+  double scale = 1;
+};
+WorkPicture at_work_size(const cv::Mat& bgr, const LayoutParams& params);
+
+/// A picture with the light divided out: 255 = paper, whatever the shadow.
+struct PaperView {
+  cv::Mat darkness;  ///< CV_8UC1: 0 paper .. 255 black, by the brightest channel: colours are less dark than ink
+  cv::Mat chroma;    ///< CV_8UC1: largest minus smallest channel
+  cv::Mat paper;     ///< CV_8UC3: the colours themselves
+};
+
+/// Per channel, divides by the background: bright parts within background_share of the long side.
+PaperView divide_light(const cv::Mat& bgr, double background_share);
+
+/// Darkness from which a pixel is ink: Otsu over what is not paper, held between low and high (shares of black).
+int ink_threshold(const cv::Mat& darkness, double low, double high);
+
+}  // namespace smokemap

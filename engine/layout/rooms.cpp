@@ -1,0 +1,54 @@
+#include "layout/rooms.hpp"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+namespace smokemap {
+
+std::vector<Polygon> find_rooms(const LayoutMap& map) {
+  if (map.walls.empty()) return {};
+  Point2 low = map.corners.front().p_px, high = low;
+  for (const auto& c : map.corners) low = low.cwiseMin(c.p_px), high = high.cwiseMax(c.p_px);
+  const double extent = std::max(1.0, (high - low).maxCoeff());
+  const double scale = 1400 / extent;  // fine enough for a closet, and the same work for every plan
+  const int border = 8;
+  const auto to_raster = [&](const Point2& p) {
+    const Point2 q = scale * (p - low);
+    return cv::Point(static_cast<int>(std::lround(q.x())) + border, static_cast<int>(std::lround(q.y())) + border);
+  };
+  cv::Mat closed(static_cast<int>((high - low).y() * scale) + 2 * border + 2, static_cast<int>((high - low).x() * scale) + 2 * border + 2,
+                 CV_8UC1, cv::Scalar(255));
+  for (std::size_t w = 0; w < map.walls.size(); ++w) {
+    const Segment2 s = map.wall_px(static_cast<int>(w));
+    cv::line(closed, to_raster(s.a), to_raster(s.b), cv::Scalar(0), 3);
+  }
+  for (const auto& o : map.openings) cv::line(closed, to_raster(o.gap_px.a), to_raster(o.gap_px.b), cv::Scalar(0), 3);
+  cv::floodFill(closed, {0, 0}, cv::Scalar(0));
+  cv::Mat labels, stats, centroids;
+  const int count = cv::connectedComponentsWithStats(closed, labels, stats, centroids, 4);
+  std::vector<std::pair<int, Polygon>> rooms;
+  for (int label = 1; label < count; ++label) {
+    const int area = stats.at<int>(label, cv::CC_STAT_AREA);
+    if (area < 0.0005 * 1400 * 1400) continue;
+    const cv::Rect box(stats.at<int>(label, cv::CC_STAT_LEFT), stats.at<int>(label, cv::CC_STAT_TOP),
+                       stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT));
+    const cv::Rect wide = cv::Rect(box.x - 2, box.y - 2, box.width + 4, box.height + 4) & cv::Rect(0, 0, closed.cols, closed.rows);
+    cv::Mat mask = labels(wide) == label;
+    cv::dilate(mask, mask, cv::Mat());
+    std::vector<std::vector<cv::Point>> outlines;
+    cv::findContours(mask, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_SIMPLE);
+    const auto& outline = *std::max_element(outlines.begin(), outlines.end(), [](const auto& a, const auto& b) { return cv::contourArea(a) < cv::contourArea(b); });
+    std::vector<cv::Point> simple;
+    cv::approxPolyDP(outline, simple, 2.5, true);
+    if (simple.size() < 3) continue;
+    Polygon room;
+    for (const auto& p : simple) room.push_back(low + Point2(p.x + wide.x - border, p.y + wide.y - border) / scale);
+    rooms.emplace_back(area, std::move(room));
+  }
+  std::stable_sort(rooms.begin(), rooms.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Polygon> out;
+  for (auto& [area, room] : rooms) out.push_back(std::move(room));
+  return out;
+}
+
+}  // namespace smokemap

@@ -1,0 +1,107 @@
+#include "layout/signs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+namespace smokemap {
+namespace {
+
+/// Class of a saturated colour by its hue (OpenCV: 0..179); empty between the classes.
+std::string colour_class(int hue) {
+  if (hue < 12 || hue > 165) return "red";
+  if (hue >= 18 && hue <= 36) return "yellow";
+  if (hue >= 40 && hue <= 96) return "green";
+  if (hue > 96 && hue <= 130) return "blue";
+  return "";
+}
+
+constexpr std::array<const char*, 4> kColours{"red", "yellow", "green", "blue"};
+
+/// One mask a colour; pale tints and dark inks belong to none.
+std::array<cv::Mat, 4> colour_masks(const PaperView& view, double min_chroma) {
+  std::array<cv::Mat, 4> masks;
+  for (auto& m : masks) m = cv::Mat::zeros(view.chroma.size(), CV_8UC1);
+  std::array<int, 180> of_hue{};
+  for (int h = 0; h < 180; ++h) {
+    of_hue[static_cast<std::size_t>(h)] = -1;
+    for (std::size_t c = 0; c < kColours.size(); ++c)
+      if (colour_class(h) == kColours[c]) of_hue[static_cast<std::size_t>(h)] = static_cast<int>(c);
+  }
+  const int chroma_limit = static_cast<int>(255 * std::max(0.30, min_chroma)), dark_limit = 190;
+  for (int y = 0; y < view.chroma.rows; ++y) {
+    const auto* chroma = view.chroma.ptr<uchar>(y);
+    const auto* dark = view.darkness.ptr<uchar>(y);
+    const auto* paper = view.paper.ptr<cv::Vec3b>(y);
+    for (int x = 0; x < view.chroma.cols; ++x) {
+      if (chroma[x] < chroma_limit || dark[x] > dark_limit) continue;
+      const int b = paper[x][0], g = paper[x][1], r = paper[x][2], d = chroma[x], high = 255 - dark[x];
+      int hue = high == r ? 30 * (g - b) / d : high == g ? 60 + 30 * (b - r) / d : 120 + 30 * (r - g) / d;
+      if (hue < 0) hue += 180;
+      const int c = of_hue[static_cast<std::size_t>(std::min(hue, 179))];
+      if (c >= 0) masks[static_cast<std::size_t>(c)].at<uchar>(y, x) = 255;
+    }
+  }
+  return masks;
+}
+
+struct Figure {
+  cv::Rect box;
+  double filled = 0;  ///< share of its box inside its outline
+  double inked = 0;   ///< share of its box that has the colour
+};
+
+std::vector<Figure> figures_in(const cv::Mat& mask, double low_px, double high_px) {
+  cv::Mat closed;
+  const int reach = std::max(1, static_cast<int>(low_px / 4)) | 1;
+  cv::morphologyEx(mask, closed, cv::MORPH_OPEN, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
+  cv::morphologyEx(closed, closed, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_RECT, {reach, reach}));
+  std::vector<std::vector<cv::Point>> outlines;
+  cv::findContours(closed, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_SIMPLE);
+  std::vector<Figure> figures;
+  for (const auto& outline : outlines) {
+    const cv::Rect box = cv::boundingRect(outline);
+    const double small = std::min(box.width, box.height), large = std::max(box.width, box.height);
+    if (small < low_px || large > high_px || large > 2.6 * small) continue;
+    Figure f;
+    f.box = box;
+    f.filled = cv::contourArea(outline) / box.area();
+    f.inked = static_cast<double>(cv::countNonZero(mask(box))) / box.area();
+    if (f.filled >= 0.5 && f.inked >= 0.35) figures.push_back(f);
+  }
+  return figures;
+}
+
+}  // namespace
+
+Signs find_signs(const PaperView& view, const LayoutParams& params) {
+  const double side = std::max(view.chroma.rows, view.chroma.cols);
+  Signs out;
+  out.covered = cv::Mat::zeros(view.chroma.size(), CV_8UC1);
+  const auto masks = colour_masks(view, params.colour_chroma);
+  double roundest = 0;
+  for (std::size_t c = 0; c < masks.size(); ++c) {
+    for (const auto& f : figures_in(masks[c], std::max(4.0, 0.006 * side), 0.05 * side)) {
+      const Point2 middle(f.box.x + 0.5 * (f.box.width - 1), f.box.y + 0.5 * (f.box.height - 1));
+      const double aspect = static_cast<double>(std::min(f.box.width, f.box.height)) / std::max(f.box.width, f.box.height);
+      const int margin = std::max(2, static_cast<int>(0.12 * std::max(f.box.width, f.box.height)));
+      const cv::Rect hidden(f.box.x - margin, f.box.y - margin, f.box.width + 2 * margin, f.box.height + 2 * margin);
+      out.covered(hidden & cv::Rect(0, 0, out.covered.cols, out.covered.rows)).setTo(255);
+      const bool disc = std::string(kColours[c]) == "blue" && aspect > 0.8 && f.filled > 0.68 && f.filled < 0.86 && f.inked > 0.6;
+      if (disc && f.inked * aspect > roundest) roundest = f.inked * aspect, out.you_are_here_px = middle;
+      LayoutSign sign;
+      sign.p_px = middle;
+      sign.radius_px = 0.25 * (f.box.width + f.box.height);
+      sign.colour = kColours[c];
+      sign.confidence = std::clamp(aspect * (0.4 + 0.6 * f.filled), 0.0, 1.0);
+      if (!disc) out.signs.push_back(sign);
+    }
+  }
+  std::stable_sort(out.signs.begin(), out.signs.end(), [](const LayoutSign& a, const LayoutSign& b) {
+    return a.p_px.y() != b.p_px.y() ? a.p_px.y() < b.p_px.y() : a.p_px.x() < b.p_px.x();
+  });
+  return out;
+}
+
+}  // namespace smokemap

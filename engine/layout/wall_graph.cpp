@@ -1,0 +1,130 @@
+#include "layout/wall_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace smokemap {
+namespace {
+
+constexpr double kCrossingAngle = 0.3;  // rad: flatter crossings are continuations
+
+/// A stroke whose ends may have moved, with the places where others meet it.
+struct GraphStroke {
+  Segment2 axis;
+  double thickness_px = 0;
+  double confidence = 0;
+  std::vector<double> cuts;  ///< distances from axis.a
+};
+
+double confidence_of(const InkStroke& s) {
+  return std::clamp(s.coverage * std::min(1.0, 0.35 + s.darkness), 0.0, 1.0);
+}
+
+/// How far beyond (or before) its end the stroke meets the other's line; the nearest one wins.
+Point2 snapped_end(const std::vector<InkStroke>& strokes, std::size_t self, bool at_b, double snap_px) {
+  const auto& s = strokes[self];
+  const Point2 end = at_b ? s.axis.b : s.axis.a;
+  const Point2 outward = at_b ? s.axis.direction() : Point2(-s.axis.direction());
+  double best = 1e300;
+  Point2 target = end;
+  for (std::size_t j = 0; j < strokes.size(); ++j) {
+    if (j == self) continue;
+    const auto& o = strokes[j];
+    const double turn = line_angle_between(s.axis.heading(), o.axis.heading());
+    const double half = 0.5 * o.thickness_px;
+    if (turn > kCrossingAngle) {
+      const auto meeting = line_intersection(s.axis, o.axis);
+      if (!meeting) continue;
+      const double ahead = (*meeting - end).dot(outward);
+      const double steep = std::max(0.3, std::sin(turn));
+      if (ahead > (half + snap_px) / steep || ahead < -(half + snap_px) / steep || -ahead > 0.6 * s.length()) continue;
+      const double beyond = distance(o.axis, *meeting);
+      if (beyond > 0.5 * s.thickness_px + snap_px) continue;
+      const double cost = std::abs(ahead) + beyond;
+      if (cost < best) best = cost, target = *meeting;
+    } else {
+      for (const Point2& other_end : {o.axis.a, o.axis.b}) {
+        const double ahead = (other_end - end).dot(outward);
+        if (std::abs(ahead) > snap_px || std::abs(signed_line_distance(s.axis, other_end)) > 0.7 * std::max(s.thickness_px, o.thickness_px)) continue;
+        const bool faces = (o.axis.midpoint() - other_end).dot(outward) > 0;
+        const double cost = (other_end - end).norm() + snap_px * 0.5;
+        if (faces && cost < best) best = cost, target = 0.5 * (other_end + end);
+      }
+    }
+  }
+  return target;
+}
+
+void cut_where_others_meet(std::vector<GraphStroke>& strokes) {
+  for (std::size_t i = 0; i < strokes.size(); ++i) {
+    auto& s = strokes[i];
+    const double length = s.axis.length();
+    s.cuts = {0, length};
+    for (std::size_t j = 0; j < strokes.size(); ++j) {
+      if (i == j) continue;
+      const auto& o = strokes[j];
+      if (const auto p = intersection(s.axis, o.axis); p && line_angle_between(s.axis.heading(), o.axis.heading()) > kCrossingAngle)
+        s.cuts.push_back(along(s.axis, *p) * length);
+      for (const Point2& end : {o.axis.a, o.axis.b})
+        if (distance(s.axis, end) < 1.5) s.cuts.push_back(std::clamp(along(s.axis, end) * length, 0.0, length));
+    }
+    std::sort(s.cuts.begin(), s.cuts.end());
+  }
+}
+
+class CornerSet {
+ public:
+  explicit CornerSet(double radius_px) : radius_px_(radius_px) {}
+  int at(const Point2& p) {
+    int nearest = -1;
+    double best = radius_px_;
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      const double d = (corners_[i].p_px - p).norm();
+      if (d < best) best = d, nearest = static_cast<int>(i);
+    }
+    if (nearest >= 0) return nearest;
+    LayoutCorner corner;
+    corner.p_px = p;
+    corners_.push_back(corner);
+    return static_cast<int>(corners_.size()) - 1;
+  }
+  std::vector<LayoutCorner> take() { return std::move(corners_); }
+
+ private:
+  double radius_px_;
+  std::vector<LayoutCorner> corners_;
+};
+
+}  // namespace
+
+LayoutMap build_wall_graph(const std::vector<InkStroke>& walls, double thickness_px, const LayoutParams& params) {
+  const double snap_px = std::max(3.0, params.snap_walls * 0.5 * thickness_px);
+  std::vector<GraphStroke> strokes;
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    const Segment2 axis{snapped_end(walls, i, false, snap_px), snapped_end(walls, i, true, snap_px)};
+    if (axis.length() > 1) strokes.push_back({axis, walls[i].thickness_px, confidence_of(walls[i]), {}});
+  }
+  cut_where_others_meet(strokes);
+  LayoutMap map;
+  CornerSet corners(std::max(2.0, 0.5 * thickness_px));
+  // Crossings first: a loose end joins a crossing, not the other way round.
+  for (const auto& s : strokes)
+    for (std::size_t c = 1; c + 1 < s.cuts.size(); ++c) corners.at(s.axis.a + s.cuts[c] * s.axis.direction());
+  std::set<std::pair<int, int>> seen;
+  for (const auto& s : strokes)
+    for (std::size_t c = 1; c < s.cuts.size(); ++c) {
+      const int a = corners.at(s.axis.a + s.cuts[c - 1] * s.axis.direction());
+      const int b = corners.at(s.axis.a + s.cuts[c] * s.axis.direction());
+      if (a == b || !seen.insert({std::min(a, b), std::max(a, b)}).second) continue;
+      map.walls.push_back({a, b, s.thickness_px, s.confidence, false});
+    }
+  map.corners = corners.take();
+  for (const auto& w : map.walls) {
+    map.corners[static_cast<std::size_t>(w.corner_a)].degree += 1;
+    map.corners[static_cast<std::size_t>(w.corner_b)].degree += 1;
+  }
+  return map;
+}
+
+}  // namespace smokemap

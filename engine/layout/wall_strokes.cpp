@@ -1,0 +1,197 @@
+#include "layout/wall_strokes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace smokemap {
+namespace {
+
+double gap_between(const Segment2& one, const Segment2& two) {
+  if (intersection(one, two)) return 0;
+  return std::min({distance(one, two.a), distance(one, two.b), distance(two, one.a), distance(two, one.b)});
+}
+
+class Groups {
+ public:
+  explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
+  std::size_t of(std::size_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::size_t a, std::size_t b) { parent_[std::max(of(a), of(b))] = std::min(of(a), of(b)); }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
+struct Region {
+  std::vector<std::size_t> members;
+  double length = 0;
+  int junctions = 0;
+  double score() const { return std::max(0, junctions - 3) * length; }
+};
+
+/// Strokes that touch, or continue each other within `bridge_px`, hang together.
+std::vector<Region> connected_regions(const std::vector<InkStroke>& strokes, double bridge_px, double side_px) {
+  Groups groups(strokes.size());
+  std::vector<int> junctions(strokes.size(), 0);
+  for (std::size_t i = 0; i < strokes.size(); ++i)
+    for (std::size_t j = i + 1; j < strokes.size(); ++j) {
+      const auto &one = strokes[i], &two = strokes[j];
+      const double touch = 0.5 * (one.thickness_px + two.thickness_px) + 3;
+      const double reach = 0.5 * (one.length() + two.length()) + std::max(bridge_px, touch);
+      if ((one.axis.midpoint() - two.axis.midpoint()).squaredNorm() > reach * reach) continue;
+      const double gap = gap_between(one.axis, two.axis);
+      const double turn = line_angle_between(one.axis.heading(), two.axis.heading());
+      if (gap <= touch && turn > radians(20)) junctions[i] += 1;
+      const bool continues = turn < radians(5) && std::abs(signed_line_distance(one.axis, two.axis.midpoint())) < touch;
+      if (gap <= touch || (continues && gap <= bridge_px)) groups.join(i, j);
+    }
+  std::vector<Region> by_root(strokes.size());
+  for (std::size_t i = 0; i < strokes.size(); ++i) {
+    auto& region = by_root[groups.of(i)];
+    region.members.push_back(i);
+    if (strokes[i].length() > 0.015 * side_px) region.length += strokes[i].length();
+    region.junctions += junctions[i];
+  }
+  std::vector<Region> regions;
+  for (auto& region : by_root)
+    if (!region.members.empty()) regions.push_back(std::move(region));
+  std::stable_sort(regions.begin(), regions.end(), [](const Region& a, const Region& b) { return a.score() > b.score(); });
+  return regions;
+}
+
+/// The value below which `share` of the weight lies.
+double weighted_quantile(std::vector<std::pair<double, double>> value_weight, double share) {
+  if (value_weight.empty()) return 0;
+  std::sort(value_weight.begin(), value_weight.end());
+  double total = 0, sum = 0;
+  for (const auto& [value, weight] : value_weight) total += weight;
+  for (const auto& [value, weight] : value_weight) {
+    sum += weight;
+    if (sum >= share * total) return value;
+  }
+  return value_weight.back().first;
+}
+
+/// The emptiest place of the length-weighted log histogram between low and high.
+double valley(const std::vector<InkStroke>& strokes, double low, double high, double otherwise) {
+  const int bins = 24;
+  std::vector<double> weight(bins, 0.0);
+  const double span = std::log(high / low);
+  double total = 0;
+  for (const auto& s : strokes) {
+    const double position = std::log(std::max(0.2, s.thickness_px) / low) / span;
+    for (int b = 0; b < bins; ++b) {
+      const double away = ((b + 0.5) / bins - position) * span / 0.10;
+      if (std::abs(away) < 3) weight[static_cast<std::size_t>(b)] += s.length() * std::exp(-0.5 * away * away);
+    }
+    total += s.length();
+  }
+  if (total <= 0) return otherwise;
+  double best = 1e300, at = otherwise;
+  for (int b = 0; b < bins; ++b) {
+    const double t = low * std::exp(span * (b + 0.5) / bins);
+    const double cost = weight[static_cast<std::size_t>(b)] + 0.01 * total * std::abs(std::log(t / otherwise));
+    if (cost < best) best = cost, at = t;
+  }
+  return at;
+}
+
+std::vector<InkStroke> pick(const std::vector<InkStroke>& strokes, const std::vector<std::size_t>& members) {
+  std::vector<InkStroke> picked;
+  picked.reserve(members.size());
+  for (const std::size_t i : members) picked.push_back(strokes[i]);
+  return picked;
+}
+
+double total_length(const std::vector<InkStroke>& strokes) {
+  return std::accumulate(strokes.begin(), strokes.end(), 0.0, [](double sum, const InkStroke& s) { return sum + s.length(); });
+}
+
+/// Blocks as long as wide are columns, signs or letters, unless they carry on another wall.
+std::vector<InkStroke> without_blocks(const std::vector<InkStroke>& strokes, double reach_px) {
+  std::vector<InkStroke> kept;
+  for (std::size_t i = 0; i < strokes.size(); ++i) {
+    const auto& s = strokes[i];
+    const bool carries_on = std::any_of(strokes.begin(), strokes.end(), [&](const InkStroke& o) {
+      return &o != &s && o.length() > 1.3 * o.thickness_px && line_angle_between(o.axis.heading(), s.axis.heading()) < radians(6) &&
+             std::abs(signed_line_distance(o.axis, s.axis.midpoint())) < 0.5 * o.thickness_px + 1 && gap_between(o.axis, s.axis) < reach_px &&
+             s.thickness_px < 1.6 * o.thickness_px;
+    });
+    if (s.length() >= 1.6 * s.thickness_px || (carries_on && s.length() >= 0.7 * s.thickness_px)) kept.push_back(s);
+  }
+  return kept;
+}
+
+/// The best region and what lies near it: corridors and window bands part a building into pieces.
+std::vector<InkStroke> the_building(const std::vector<InkStroke>& walls, double reach_px, double side_px) {
+  const auto regions = connected_regions(walls, reach_px, side_px);
+  if (regions.empty()) return {};
+  std::vector<bool> adopted(regions.size(), false);
+  std::vector<InkStroke> building = pick(walls, regions.front().members);
+  adopted[0] = true;
+  for (bool grown = true; grown;) {
+    grown = false;
+    for (std::size_t r = 1; r < regions.size(); ++r) {
+      if (adopted[r] || regions[r].length < 0.03 * side_px) continue;
+      const bool near = std::any_of(regions[r].members.begin(), regions[r].members.end(), [&](std::size_t m) {
+        return std::any_of(building.begin(), building.end(), [&](const InkStroke& b) { return gap_between(walls[m].axis, b.axis) < reach_px; });
+      });
+      if (!near) continue;
+      const auto more = pick(walls, regions[r].members);
+      building.insert(building.end(), more.begin(), more.end());
+      adopted[r] = grown = true;
+    }
+  }
+  return building;
+}
+
+}  // namespace
+
+WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture, const LayoutParams& params) {
+  const double side = std::max(picture.width, picture.height);
+  const double bridge = 0.02 * side;
+  std::vector<InkStroke> candidates;
+  for (const auto& s : strokes)
+    if (s.length() >= 0.6 * params.min_wall_share * side && s.length() >= 0.7 * s.thickness_px) candidates.push_back(s);
+  const auto regions = connected_regions(candidates, bridge, side);
+  WallStrokes out;
+  if (regions.empty()) return out;
+  for (const auto& region : regions)
+    if (region.score() > 0.25 * regions.front().score() && region.score() > 0) out.regions += 1;
+  const auto plan = pick(candidates, regions.front().members);
+
+  std::vector<std::pair<double, double>> by_area;
+  for (const auto& s : plan)
+    if (s.length() >= 2.5 * s.thickness_px) by_area.emplace_back(s.thickness_px, s.length() * s.thickness_px);
+  out.thickness_px = weighted_quantile(by_area, 0.6);
+  out.thin_limit_px = valley(plan, 0.6 * params.thin_ratio * out.thickness_px, 1.15 * params.thin_ratio * out.thickness_px,
+                             0.9 * params.thin_ratio * out.thickness_px);
+  std::vector<InkStroke> thick;
+  for (const auto& s : candidates) {
+    if (s.thickness_px < out.thin_limit_px) out.thin.push_back(s);
+    else if (s.thickness_px < 2.2 * out.thickness_px && s.coverage > 0.55) thick.push_back(s);
+  }
+  thick = without_blocks(thick, params.max_opening_share * side);
+
+  const auto pairs = merge_collinear(pair_hollow(candidates, 0.6 * params.max_wall_share * side), params.merge_angle_deg, 2);
+  if (total_length(pairs) > 0.6 * total_length(thick)) {
+    std::vector<std::pair<double, double>> spacing;
+    for (const auto& p : pairs) spacing.emplace_back(p.thickness_px, p.length());
+    const double usual = weighted_quantile(spacing, 0.5);
+    out.walls.clear();
+    for (const auto& p : pairs)
+      if (p.thickness_px < 2.5 * usual) out.walls.push_back(p);
+    out.thickness_px = weighted_quantile(spacing, 0.6);
+    out.thin = candidates;
+    out.hollow = true;
+  } else {
+    out.walls = thick;
+  }
+  out.walls = the_building(out.walls, params.max_opening_share * side, side);
+  return out;
+}
+
+}  // namespace smokemap

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "layout/ink_stroke.hpp"
+#include "layout/layout_params.hpp"
+
+namespace smokemap {
+
+/// Ink strokes told apart by what they are.
+struct WallStrokes {
+  std::vector<InkStroke> walls;
+  std::vector<InkStroke> thin;  ///< of the plan's region, too thin for its walls: leaves, windows, treads, furniture
+  double thickness_px = 0;      ///< of the thickest usual walls
+  double thin_limit_px = 0;     ///< below is not wall
+  bool hollow = false;          ///< the plan draws its walls as two thin lines
+  int regions = 0;              ///< parts of the sheet that could be a plan; more than one deserves a warning
+};
+
+/// Chooses the plan among the drawings on the sheet (most junctions and wall length) and its thickness classes, which it reads
+/// from the histogram of thicknesses: the emptiest place below the main class parts walls from thin lines. Where no class
+/// stands out, pairs of parallel thin lines are the walls (hollow), else the single lines themselves.
+WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture, const LayoutParams& params);
+
+/// Pairs of parallel thin lines as one stroke each, as thick as both together. A line with like neighbours on both sides
+/// (stairs, hatching, shelves) makes no pair.
+std::vector<InkStroke> pair_hollow(const std::vector<InkStroke>& thin, double max_spacing_px);
+
+/// Strokes on one line, overlapping or less than `gap_px` apart, become one.
+std::vector<InkStroke> merge_collinear(std::vector<InkStroke> strokes, double angle_deg, double gap_px);
+
+}  // namespace smokemap
