@@ -11,18 +11,11 @@
 #include "maps/odometry.hpp"
 #include "maps/pose_graph.hpp"
 #include "maps/radar_sweep.hpp"
+#include "slam/front_end.hpp"
 #include "slam/slam_params.hpp"
 
 namespace smokemap {
 
-/// What became of a scan. A scan without a match still moves the robot: by odometry, or by its last velocity.
-enum class ScanFate : std::uint8_t {
-  kMatched,        ///< pose from the match
-  kFirst,          ///< the first scan defines the map
-  kTooFewPoints,   ///< nearly all beams without information (smoke, open space): pose from the prediction
-  kPoorMatch,      ///< did not fit the map: pose from the prediction, nothing written to the map
-  kDuplicate,      ///< same stamp and same ranges as the scan before: ignored
-};
 const char* to_string(ScanFate fate);
 
 struct ScanOutcome {

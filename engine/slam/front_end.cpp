@@ -1,0 +1,146 @@
+#include "slam/front_end.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "slam/pose_search.hpp"
+
+namespace smokemap {
+namespace {
+
+constexpr double kMapHalfSize_m = 40.0;
+constexpr int kRebuildEveryNodes = 10;
+constexpr double kWeakScore = 0.2;
+
+Eigen::Matrix3d spread(const PredictedStep& step) {
+  return Eigen::Vector3d(step.sigma_m * step.sigma_m, step.sigma_m * step.sigma_m, step.sigma_rad * step.sigma_rad).asDiagonal();
+}
+
+}  // namespace
+
+FrontEnd::FrontEnd(const SlamParams& params) : params_(params), map_(params.front_end.cell_m) {}
+
+FrontEnd::Tracked FrontEnd::track(const ScanPoints& points, const PredictedStep& step) {
+  const bool too_few = points.surface.size() < static_cast<std::size_t>(params_.points.least_points);
+  if (!started_) return too_few ? answer(ScanFate::kTooFewPoints, 0) : begin_piece(points, ScanFate::kFirst);
+
+  const Pose2 predicted = T_track_robot_ * step.T_before_now;
+  blind_covariance_ += spread(step);
+  if (too_few) {
+    T_track_robot_ = predicted;
+    return answer(ScanFate::kTooFewPoints, 0);
+  }
+  const Alignment found = match(points.surface, predicted, step);
+  const FrontEndParams& limits = params_.front_end;
+  if (found.score < limits.least_score) {
+    const Pose2 moved = predicted.inverse() * found.T_map_robot;
+    const bool plausible = moved.translation().norm() < 3 * step.sigma_m && std::abs(moved.heading()) < 3 * step.sigma_rad;
+    T_track_robot_ = found.score >= kWeakScore && plausible ? found.T_map_robot : predicted;
+    if (++poor_in_a_row_ >= limits.lost_after_scans || (far_from_last_node() && step.by_odometry))
+      return begin_piece(points, ScanFate::kNewPiece);
+    return answer(ScanFate::kPoorMatch, found.score);
+  }
+  poor_in_a_row_ = 0;
+  T_track_robot_ = found.T_map_robot;
+  blind_covariance_ = match_covariance(found);
+  Tracked tracked = answer(ScanFate::kMatched, found.score);
+  if (far_from_last_node()) {
+    tracked.node = true;
+    keep(points);
+  }
+  return tracked;
+}
+
+Alignment FrontEnd::match(const std::vector<SurfacePoint>& surface, const Pose2& predicted, const PredictedStep& step) {
+  PosePrior prior{predicted, Eigen::Matrix3d::Zero()};
+  prior.information.diagonal() << 1 / (step.sigma_m * step.sigma_m), 1 / (step.sigma_m * step.sigma_m),
+      1 / (step.sigma_rad * step.sigma_rad);
+  const Alignment refined = align(surface, map_, predicted, params_.align, prior);
+  return search_needed(step, refined.score) ? search(surface, prior, step, refined) : refined;
+}
+
+bool FrontEnd::search_needed(const PredictedStep& step, double score) const {
+  const FrontEndParams& limits = params_.front_end;
+  return score < limits.good_score || step.jumped || step.T_before_now.translation().norm() > limits.sparse_step_m ||
+         std::abs(step.T_before_now.heading()) > limits.sparse_step_rad;
+}
+
+/// Looks for a better start than the prediction, refines from there, and keeps the better of both.
+Alignment FrontEnd::search(const std::vector<SurfacePoint>& surface, const PosePrior& prior, const PredictedStep& step,
+                           const Alignment& so_far) {
+  std::vector<Point2> known, points;
+  map_.for_each([&](const SurfaceMap::Surface& s) {
+    if ((s.p - prior.T_map_robot.translation()).norm() < params_.points.farthest_m) known.push_back(s.p);
+  });
+  if (known.empty()) return so_far;
+  for (const SurfacePoint& point : surface) points.push_back(point.p);
+  const LikelihoodGrid grid(known, 0.1, 0.1, 3);
+  const SearchWindow window{prior.T_map_robot, std::max(params_.front_end.search_m, std::min(1.5, 2.5 * step.sigma_m)),
+                            std::max(params_.front_end.search_rad, std::min(1.0, 2.5 * step.sigma_rad))};
+  const auto found = search_pose(points, grid, window, 0.25);
+  if (!found) return so_far;
+  PosePrior loose = prior;
+  loose.information *= 0.25;
+  const Alignment refined = align(surface, map_, found->T_map_robot, params_.align, loose);
+  return refined.score > so_far.score + 0.02 ? refined : so_far;
+}
+
+bool FrontEnd::far_from_last_node() const {
+  const Pose2 moved = nodes_.back().T_track_node.inverse() * T_track_robot_;
+  return moved.translation().norm() >= params_.front_end.node_every_m ||
+         std::abs(moved.heading()) >= params_.front_end.node_every_rad;
+}
+
+void FrontEnd::keep(const ScanPoints& points) {
+  nodes_.push_back({T_track_robot_, points.surface});
+  while (nodes_.size() > static_cast<std::size_t>(params_.front_end.map_nodes)) nodes_.pop_front();
+  blind_covariance_.setZero();
+  if (++nodes_since_rebuild_ >= kRebuildEveryNodes || !map_.covers(T_track_robot_.translation(), 0.7 * kMapHalfSize_m))
+    rebuild_map();
+  else
+    map_.add(points.surface, T_track_robot_);
+}
+
+void FrontEnd::rebuild_map() {
+  nodes_since_rebuild_ = 0;
+  map_.reset(T_track_robot_.translation(), kMapHalfSize_m);
+  for (const Node& node : nodes_)
+    if ((node.T_track_node.translation() - T_track_robot_.translation()).norm() <= params_.front_end.map_reach_m)
+      map_.add(node.surface, node.T_track_node);
+}
+
+FrontEnd::Tracked FrontEnd::begin_piece(const ScanPoints& points, ScanFate fate) {
+  Tracked tracked = answer(fate, 0);
+  tracked.node = true;
+  tracked.kind = EdgeKind::kOdometry;
+  started_ = true;
+  poor_in_a_row_ = 0;
+  nodes_.clear();
+  keep(points);
+  rebuild_map();
+  return tracked;
+}
+
+Eigen::Matrix3d FrontEnd::match_covariance(const Alignment& alignment) const {
+  Eigen::Matrix3d information = params_.graph.pair_information * alignment.information;
+  information.diagonal() += Eigen::Vector3d(4.0, 4.0, 4.0);  // nothing is less certain than half a metre after a match
+  return information.inverse();
+}
+
+FrontEnd::Tracked FrontEnd::answer(ScanFate fate, double score) const {
+  Tracked tracked;
+  tracked.fate = fate;
+  tracked.score = score;
+  tracked.T_track_robot = T_track_robot_;
+  if (nodes_.empty()) return tracked;
+  const Pose2& T_track_node = nodes_.back().T_track_node;
+  tracked.T_node_robot = T_track_node.inverse() * T_track_robot_;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = T_track_node.rotation().transpose();
+  tracked.covariance = turn * blind_covariance_ * turn.transpose();
+  return tracked;
+}
+
+}  // namespace smokemap

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "maps/pose_graph.hpp"
+#include "slam/align.hpp"
+#include "slam/motion_model.hpp"
+
+namespace smokemap {
+
+/// What became of a scan. A scan without a match still moves the robot: by odometry, or by its last velocity.
+enum class ScanFate : std::uint8_t {
+  kMatched,        ///< pose from the match
+  kFirst,          ///< the first scan defines the map
+  kTooFewPoints,   ///< nearly all beams without information (smoke, open space): pose from the prediction
+  kPoorMatch,      ///< did not fit the map: pose from the prediction, nothing written to the map
+  kNewPiece,       ///< nothing had fitted for a while: a new piece of map begins here, tied by the prediction only
+  kDuplicate,      ///< same stamp and same ranges as the scan before: ignored
+};
+
+/// The fast half: one scan after another against a local map of the last nodes, in a frame `track` that is smooth and
+/// drifts. It never waits for the graph and never jumps when the graph is solved.
+class FrontEnd {
+ public:
+  struct Tracked {
+    ScanFate fate = ScanFate::kMatched;
+    Pose2 T_track_robot;
+    double score = 0;
+    bool node = false;                ///< the scan joined the local map and belongs into the graph
+    Pose2 T_node_robot;               ///< from the last node (before this one, if this is one)
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of T_node_robot, frame of that node
+    EdgeKind kind = EdgeKind::kMatched;
+  };
+
+  explicit FrontEnd(const SlamParams& params);
+  /// @param step  predicted motion since the scan before
+  Tracked track(const ScanPoints& points, const PredictedStep& step);
+  const Pose2& T_track_robot() const { return T_track_robot_; }
+
+ private:
+  struct Node {
+    Pose2 T_track_node;
+    std::vector<SurfacePoint> surface;
+  };
+  Alignment match(const std::vector<SurfacePoint>& surface, const Pose2& predicted, const PredictedStep& step);
+  bool search_needed(const PredictedStep& step, double score) const;
+  Alignment search(const std::vector<SurfacePoint>& surface, const PosePrior& prior, const PredictedStep& step, const Alignment& so_far);
+  bool far_from_last_node() const;
+  void keep(const ScanPoints& points);
+  void rebuild_map();
+  Tracked begin_piece(const ScanPoints& points, ScanFate fate);
+  Eigen::Matrix3d match_covariance(const Alignment& alignment) const;
+  Tracked answer(ScanFate fate, double score) const;
+
+  SlamParams params_;
+  SurfaceMap map_;
+  std::deque<Node> nodes_;
+  int nodes_since_rebuild_ = 0;
+  Pose2 T_track_robot_;
+  Eigen::Matrix3d blind_covariance_ = Eigen::Matrix3d::Zero();  ///< of predicted steps since the last match, track frame
+  int poor_in_a_row_ = 0;
+  bool started_ = false;
+};
+
+}  // namespace smokemap

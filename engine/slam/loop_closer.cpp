@@ -1,0 +1,129 @@
+#include "slam/loop_closer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slam/align.hpp"
+#include "slam/pose_search.hpp"
+
+namespace smokemap {
+namespace {
+
+constexpr double kTargetHalfSize_m = 25.0;
+constexpr int kTargetNodes = 12;           ///< each way along the old visit
+constexpr double kTargetReach_m = 5.0;
+constexpr std::size_t kMostCandidates = 2;
+constexpr double kAgree_m = 0.20;
+constexpr double kAgree_rad = 0.035;
+constexpr double kSigmaLoop_m = 0.03, kSigmaLoop_rad = 0.006;
+constexpr std::size_t kSearchPoints = 200;
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+LoopCloser::LoopCloser(const SlamParams& params) : params_(params), target_(params.front_end.cell_m) {}
+
+LoopCloser::Found LoopCloser::close(const PoseGraph& graph, const NodeScans& scans, int node) {
+  Found found;
+  for (const Candidate& candidate : candidates(graph, scans, node)) {
+    ++found.tried;
+    if (try_candidate(graph, scans, node, candidate, found)) break;
+  }
+  return found;
+}
+
+/// Nearest old visits first, measured in radii; one candidate per visit.
+std::vector<LoopCloser::Candidate> LoopCloser::candidates(const PoseGraph& graph, const NodeScans& scans, int node) const {
+  const LoopParams& limits = params_.loops;
+  const std::vector<double> distance = graph_distances(graph, scans, node, 1.0);
+  const Point2 here = graph.nodes[index(node)].T_map_robot.translation();
+  std::vector<std::pair<double, Candidate>> near;
+  for (int j = 0; j < node; ++j) {
+    const double way = std::min(distance[index(j)], scans.way_m[index(node)] - scans.way_m[index(j)]);
+    if (way < limits.least_way_m) continue;
+    const double radius = std::min(limits.search_most_m, limits.search_base_m + limits.drift_share * way);
+    const double away = (graph.nodes[index(j)].T_map_robot.translation() - here).norm();
+    if (away > radius + 2.0) continue;
+    near.emplace_back(away / (radius + 2.0), Candidate{j, radius, std::min(limits.search_rad, 0.15 + 0.01 * way)});
+  }
+  std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Candidate> chosen;
+  for (const auto& [share, candidate] : near) {
+    const bool same_visit = std::any_of(chosen.begin(), chosen.end(), [&, j = candidate.node](const Candidate& other) {
+      return std::abs(scans.way_m[index(other.node)] - scans.way_m[index(j)]) < 2 * limits.least_way_m;
+    });
+    if (!same_visit) chosen.push_back(candidate);
+    if (chosen.size() == kMostCandidates) break;
+  }
+  return chosen;
+}
+
+bool LoopCloser::try_candidate(const PoseGraph& graph, const NodeScans& scans, int node, const Candidate& candidate, Found& found) {
+  const LoopParams& limits = params_.loops;
+  draw_target(graph, scans, node, candidate.node, candidate.radius_m);
+  const std::vector<SurfacePoint> joint = joint_scan(graph, scans, node);
+  if (joint.size() < index(params_.points.least_points) || target_.empty()) return false;
+
+  std::vector<Point2> known, points;
+  target_.for_each([&](const SurfaceMap::Surface& s) { known.push_back(s.p); });
+  const std::size_t stride = std::max<std::size_t>(1, joint.size() / kSearchPoints);
+  for (std::size_t i = 0; i < joint.size(); i += stride) points.push_back(joint[i].p);
+  const LikelihoodGrid grid(known, limits.cell_m, 1.2 * limits.cell_m, 6);
+  const SearchWindow window{graph.nodes[index(node)].T_map_robot, candidate.radius_m, candidate.half_rad};
+  const auto coarse = search_pose(points, grid, window, limits.least_search_score, 0.6);
+  if (!coarse) return false;
+
+  ++found.rejected;  // until it has passed everything
+  if (coarse->runner_up_score > limits.unique_within * coarse->score) return false;
+  const Alignment fine = align(joint, target_, coarse->T_map_robot, params_.align);
+  if (fine.score < limits.least_align_score || !singles_agree(graph, scans, node, fine.T_map_robot)) return false;
+  const Pose2& T_map_old = graph.nodes[index(candidate.node)].T_map_robot;
+  const auto sqrt_info = edge_sqrt_information(params_.graph.pair_information * fine.information, T_map_old.heading(),
+                                               kSigmaLoop_m, kSigmaLoop_rad);
+  if (!sqrt_info) return false;
+  --found.rejected;
+  found.edges.push_back({candidate.node, node, T_map_old.inverse() * fine.T_map_robot, *sqrt_info, EdgeKind::kLoop, LinkState::kKept});
+  return true;
+}
+
+/// The old visit: nodes driven just before and after `around`, never near `node` itself.
+void LoopCloser::draw_target(const PoseGraph& graph, const NodeScans& scans, int node, int around, double radius_m) {
+  const Point2 middle = graph.nodes[index(around)].T_map_robot.translation();
+  target_.reset(middle, std::min(60.0, kTargetHalfSize_m + radius_m));
+  const int last = std::min(around + kTargetNodes, node - 1);
+  for (int j = std::max(0, around - kTargetNodes); j <= last; ++j) {
+    if ((graph.nodes[index(j)].T_map_robot.translation() - middle).norm() > kTargetReach_m) continue;
+    if (scans.way_m[index(node)] - scans.way_m[index(j)] < 0.5 * params_.loops.least_way_m) continue;
+    target_.add(scans.surface[index(j)], graph.nodes[index(j)].T_map_robot);
+  }
+}
+
+std::vector<SurfacePoint> LoopCloser::joint_scan(const PoseGraph& graph, const NodeScans& scans, int node) const {
+  std::vector<SurfacePoint> joint;
+  const Pose2 T_node_map = graph.nodes[index(node)].T_map_robot.inverse();
+  for (int i = node; i > std::max(-1, node - params_.loops.joint_nodes); --i) {
+    const Pose2 T_node_i = T_node_map * graph.nodes[index(i)].T_map_robot;
+    const Eigen::Matrix2d R = T_node_i.rotation();
+    for (const SurfacePoint& s : scans.surface[index(i)]) joint.push_back({T_node_i * s.p, R * s.normal, s.weight});
+  }
+  return joint;
+}
+
+bool LoopCloser::singles_agree(const PoseGraph& graph, const NodeScans& scans, int node, const Pose2& T_map_node) const {
+  int agree = 0, asked = 0;
+  for (int i = node; i > std::max(-1, node - params_.loops.joint_nodes); i -= 2) {
+    const Pose2 expected = T_map_node * (graph.nodes[index(node)].T_map_robot.inverse() * graph.nodes[index(i)].T_map_robot);
+    const Alignment alone = align(scans.surface[index(i)], target_, expected, params_.align);
+    const Pose2 off = expected.inverse() * alone.T_map_robot;
+    // Along a corridor a single scan may slide: only what its points measure can disagree.
+    Eigen::Vector3d error = (alone.T_map_robot.vector() - expected.vector());
+    error.z() = wrap_angle(error.z());
+    const double pull = std::sqrt(std::max(0.0, error.dot(alone.information * error)) / std::max(1, alone.matched)) * params_.align.sigma_point_m;
+    ++asked;
+    agree += alone.score >= 0.8 * params_.loops.least_align_score && pull < 0.5 * kAgree_m && off.translation().norm() < 2 * kAgree_m && std::abs(off.heading()) < kAgree_rad;
+  }
+  return agree == asked;
+}
+
+}  // namespace smokemap

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "slam/node_scans.hpp"
+#include "slam/surface_map.hpp"
+
+namespace smokemap {
+
+/// Finds where a node sees what much older nodes saw. The last few nodes are searched as one scan, by branch and bound,
+/// inside a window that grows with the way through the graph between the two visits; a find counts only if it fits well,
+/// fits in one place only, and if single scans of the group, matched alone, agree with it.
+class LoopCloser {
+ public:
+  explicit LoopCloser(const SlamParams& params);
+
+  struct Found {
+    std::vector<PoseEdge> edges;
+    int tried = 0;
+    int rejected = 0;  ///< good search score, refused by verification
+  };
+  /// Loops of one node, at most a few; the graph is not changed.
+  Found close(const PoseGraph& graph, const NodeScans& scans, int node);
+
+ private:
+  struct Candidate {
+    int node = 0;
+    double radius_m = 0;
+    double half_rad = 0;
+  };
+  std::vector<Candidate> candidates(const PoseGraph& graph, const NodeScans& scans, int node) const;
+  bool try_candidate(const PoseGraph& graph, const NodeScans& scans, int node, const Candidate& candidate, Found& found);
+  void draw_target(const PoseGraph& graph, const NodeScans& scans, int node, int around, double radius_m);
+  std::vector<SurfacePoint> joint_scan(const PoseGraph& graph, const NodeScans& scans, int node) const;
+  bool singles_agree(const PoseGraph& graph, const NodeScans& scans, int node, const Pose2& T_map_node) const;
+
+  SlamParams params_;
+  SurfaceMap target_;
+};
+
+}  // namespace smokemap

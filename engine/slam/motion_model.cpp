@@ -1,0 +1,72 @@
+#include "slam/motion_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace smokemap {
+namespace {
+constexpr double kLongestExtrapolation_s = 0.5;
+}
+
+void OdometryBuffer::add(const Odometry& reading) {
+  if (!reading.T_odom_robot.is_finite()) return;
+  readings_.push_back(reading);
+  if (readings_.size() > kMost) readings_.pop_front();
+}
+
+std::optional<Pose2> OdometryBuffer::at(Stamp stamp) const {
+  if (readings_.empty()) return std::nullopt;
+  for (auto r = readings_.rbegin(); r != readings_.rend(); ++r)
+    if (r->stamp == stamp) return r->T_odom_robot;
+  for (auto later = readings_.rbegin(); later + 1 != readings_.rend(); ++later) {
+    const auto earlier = later + 1;
+    if (earlier->stamp > stamp || later->stamp < stamp) continue;
+    const double share = static_cast<double>(stamp - earlier->stamp) / static_cast<double>(later->stamp - earlier->stamp);
+    return interpolate(earlier->T_odom_robot, later->T_odom_robot, share);
+  }
+  const double ahead = to_seconds(stamp - readings_.back().stamp);
+  const std::optional<Twist2> moving = twist();
+  if (!moving || ahead <= 0) return readings_.back().T_odom_robot;
+  return readings_.back().T_odom_robot * moving->after(std::min(ahead, kLongestExtrapolation_s));
+}
+
+std::optional<Twist2> OdometryBuffer::twist() const {
+  for (auto before = readings_.rbegin(); before != readings_.rend(); ++before) {
+    const double seconds = to_seconds(readings_.back().stamp - before->stamp);
+    if (seconds < 1e-3) continue;
+    if (seconds > 1.0) break;
+    return twist_of(before->T_odom_robot.inverse() * readings_.back().T_odom_robot, seconds);
+  }
+  return std::nullopt;
+}
+
+Twist2 twist_of(const Pose2& T_before_now, double seconds) {
+  if (!(seconds > 1e-3)) return {};
+  return {T_before_now.translation() / seconds, T_before_now.heading() / seconds};
+}
+
+PredictedStep predict_step(const std::optional<Pose2>& T_odom_before, const std::optional<Pose2>& T_odom_now, double seconds,
+                           const std::optional<Twist2>& last_twist, const FrontEndParams& params) {
+  PredictedStep step;
+  const double elapsed = std::max(0.0, seconds);
+  if (T_odom_before && T_odom_now) {
+    step.T_before_now = T_odom_before->inverse() * *T_odom_now;
+    // Stamps are not to be trusted by fractions of a second: half a second of grace.
+    step.jumped = step.T_before_now.translation().norm() > params.fastest_mps * (elapsed + 0.5) ||
+                  std::abs(step.T_before_now.heading()) > params.fastest_radps * (elapsed + 0.5);
+    step.by_odometry = !step.jumped;
+  }
+  if (step.by_odometry) {
+    const double way = step.T_before_now.translation().norm(), turn = std::abs(step.T_before_now.heading());
+    step.sigma_m = params.sigma_odometry_m + params.sigma_odometry_share * way;
+    step.sigma_rad = params.sigma_odometry_rad + params.sigma_turn_share * turn;
+    return step;
+  }
+  const double horizon = std::min(elapsed, 1.0);
+  step.T_before_now = last_twist ? last_twist->after(horizon) : Pose2();
+  step.sigma_m = 0.05 + 0.5 * horizon * std::min(1.0, params.fastest_mps);
+  step.sigma_rad = 0.05 + 0.5 * horizon;
+  return step;
+}
+
+}  // namespace smokemap

@@ -1,0 +1,109 @@
+#include "slam/radar_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "slam/principal_line.hpp"
+
+namespace smokemap {
+namespace {
+
+/// Echoes by cells of the neighbourhood's size.
+class EchoGrid {
+ public:
+  EchoGrid(const std::vector<RadarEcho>& echoes, double cell_m) : echoes_(echoes), cell_m_(cell_m) {
+    for (std::size_t i = 0; i < echoes.size(); ++i) cells_[key(column(echoes[i].p.x()), column(echoes[i].p.y()))].push_back(i);
+  }
+  template <typename Visit>
+  void around(const Point2& p, Visit&& visit) const {
+    for (int y = column(p.y()) - 1; y <= column(p.y()) + 1; ++y)
+      for (int x = column(p.x()) - 1; x <= column(p.x()) + 1; ++x) {
+        const auto cell = cells_.find(key(x, y));
+        if (cell == cells_.end()) continue;
+        for (const std::size_t i : cell->second)
+          if ((echoes_[i].p - p).norm() <= cell_m_) visit(echoes_[i]);
+      }
+  }
+
+ private:
+  int column(double v) const { return static_cast<int>(std::floor(v / cell_m_)); }
+  static std::int64_t key(int x, int y) { return (static_cast<std::int64_t>(x) << 32) ^ static_cast<std::uint32_t>(y); }
+  const std::vector<RadarEcho>& echoes_;
+  double cell_m_;
+  std::unordered_map<std::int64_t, std::vector<std::size_t>> cells_;
+};
+
+SurfacePoint surface_around(const EchoGrid& grid, const RadarEcho& echo, const Point2& p_sensor) {
+  PrincipalLine line;
+  double weight = 0;
+  grid.around(echo.p, [&](const RadarEcho& other) {
+    line.add(other.p, other.weight);
+    weight += other.weight;
+  });
+  SurfacePoint point{echo.p, Point2::Zero(), std::log1p(weight)};
+  if (line.count() < 4) return point;
+  const PrincipalLine::Fit fit = line.fit();
+  point.p = fit.mean;
+  if (fit.rms_along_m < 2.0 * fit.rms_across_m) return point;
+  point.normal = fit.normal.dot(p_sensor - fit.mean) < 0 ? Point2(-fit.normal) : fit.normal;
+  return point;
+}
+
+}  // namespace
+
+std::vector<RadarEcho> strongest_echoes(const RadarSweep& sweep, const Twist2& twist, const RadarParams& params) {
+  std::vector<RadarEcho> echoes;
+  std::vector<int> peaks;
+  for (int a = 0; a < sweep.azimuths; ++a) {
+    const float* power = &sweep.power[static_cast<std::size_t>(a) * static_cast<std::size_t>(sweep.bins)];
+    peaks.clear();
+    for (int b = 1; b + 1 < sweep.bins; ++b) {
+      const double range = sweep.range_min_m + b * sweep.range_resolution_m;
+      if (range < params.nearest_m || range > params.farthest_m) continue;
+      if (std::isfinite(power[b]) && power[b] >= params.least_power && power[b] >= power[b - 1] && power[b] > power[b + 1]) peaks.push_back(b);
+    }
+    std::stable_sort(peaks.begin(), peaks.end(), [&](int i, int j) { return power[i] > power[j]; });
+    peaks.resize(std::min(peaks.size(), static_cast<std::size_t>(params.strongest)));
+    const Pose2 T_start_now = twist.after(sweep.duration_s * a / sweep.azimuths);
+    const double angle = sweep.azimuth_min_rad + a * sweep.azimuth_increment_rad;
+    for (const int b : peaks) {
+      const double range = sweep.range_min_m + b * sweep.range_resolution_m;
+      const Point2 p = T_start_now * (sweep.T_robot_radar * Point2(range * std::cos(angle), range * std::sin(angle)));
+      echoes.push_back({p, a, range, std::log(static_cast<double>(power[b]))});
+    }
+  }
+  return echoes;
+}
+
+ScanPoints surface_points(const RadarSweep& sweep, const Twist2& twist, const RadarParams& radar, const PointParams& points) {
+  const std::vector<RadarEcho> echoes = strongest_echoes(sweep, twist, radar);
+  const EchoGrid near(echoes, radar.surface_radius_m), crowded(echoes, radar.spacing_m);
+  const Point2 p_sensor = sweep.T_robot_radar.translation();
+  ScanPoints out;
+  std::vector<Point2> hits;
+  std::vector<bool> drawn(static_cast<std::size_t>(sweep.azimuths), false);
+  std::vector<const RadarEcho*> kept;
+  for (const RadarEcho& echo : echoes) {  // strongest first within an azimuth
+    const bool close = std::any_of(kept.begin(), kept.end(), [&](const RadarEcho* k) { return (k->p - echo.p).norm() < radar.spacing_m; });
+    if (!close) kept.push_back(&echo);
+  }
+  std::stable_sort(kept.begin(), kept.end(), [](const RadarEcho* a, const RadarEcho* b) { return a->weight > b->weight; });
+  for (const RadarEcho* echo : kept) {
+    if (out.surface.size() == static_cast<std::size_t>(points.most_points)) break;
+    const SurfacePoint point = surface_around(near, *echo, p_sensor);
+    out.surface.push_back(point);
+  }
+  for (const RadarEcho& echo : echoes) {
+    int support = 0;
+    crowded.around(echo.p, [&](const RadarEcho&) { ++support; });
+    if (support < 3 || drawn[static_cast<std::size_t>(echo.azimuth)]) continue;
+    drawn[static_cast<std::size_t>(echo.azimuth)] = true;
+    hits.push_back(echo.p);
+  }
+  out.hits_robot = std::make_shared<const std::vector<Point2>>(std::move(hits));
+  out.free_ends_robot = std::make_shared<const std::vector<Point2>>();
+  return out;
+}
+
+}  // namespace smokemap

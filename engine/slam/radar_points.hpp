@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "maps/radar_sweep.hpp"
+#include "slam/surface_points.hpp"
+
+namespace smokemap {
+
+/// The strongest echoes of each azimuth, in the robot frame at the sweep's stamp, straightened.
+/// weight = log of power over receiver noise.
+struct RadarEcho {
+  Point2 p = Point2::Zero();
+  int azimuth = 0;
+  double range_m = 0;
+  double weight = 0;
+};
+
+/// At most params.strongest local maxima of power per azimuth, over params.least_power, within the range limits.
+std::vector<RadarEcho> strongest_echoes(const RadarSweep& sweep, const Twist2& twist, const RadarParams& params);
+
+/// Weighted oriented surface points for the matcher: mean and main direction of the echoes around each thinned one.
+/// Hits to draw are echoes on a surface, nearest of their azimuth; a radar clears nothing: no free ends.
+/// Source: CFEAR (Adolfsson et al., T-RO 2023), lengths for rooms instead of streets.
+ScanPoints surface_points(const RadarSweep& sweep, const Twist2& twist, const RadarParams& radar, const PointParams& points);
+
+}  // namespace smokemap

@@ -1,0 +1,243 @@
+#include "slam/slam.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/covariance.hpp"
+#include "maps/radar_image.hpp"
+#include "slam/back_end.hpp"
+#include "slam/radar_points.hpp"
+#include "slam/smoke.hpp"
+
+namespace smokemap {
+namespace {
+
+constexpr double kSweepIsFresh_s = 1.0;
+
+/// Where a scan stands relative to the graph.
+struct Anchor {
+  Stamp stamp = 0;
+  Pose2 T_track_robot;
+  int node = 0;  ///< last node at or before the scan
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+}  // namespace
+
+const char* to_string(ScanFate fate) {
+  switch (fate) {
+    case ScanFate::kMatched: return "matched";
+    case ScanFate::kFirst: return "first";
+    case ScanFate::kTooFewPoints: return "too_few_points";
+    case ScanFate::kPoorMatch: return "poor_match";
+    case ScanFate::kNewPiece: return "new_piece";
+    case ScanFate::kDuplicate: return "duplicate";
+  }
+  broken_promise("a known ScanFate", __FILE__, __LINE__);
+}
+
+class Slam::Impl {
+ public:
+  explicit Impl(const SlamParams& params) : params_(params), front_(params), back_(params) {}
+
+  void add_odometry(const Odometry& reading) {
+    ++counters_.odometry;
+    odometry_.add(reading);
+  }
+  Result<ScanOutcome> add_scan(const LaserScan& scan);
+  Result<ScanOutcome> add_sweep(const RadarSweep& sweep);
+  Pose2 T_map_track() const;
+  Pose2 T_map_odom() const;
+  StampedPose latest() const;
+  Trajectory trajectory() const;
+
+  SlamParams params_;
+  FrontEnd front_;
+  BackEnd back_;
+  SlamCounters counters_;
+
+ private:
+  ScanOutcome add_points(Stamp stamp, const std::string& robot, const ScanPoints& points);
+  PredictedStep predict(Stamp stamp);
+  std::vector<bool> smoke_in(const LaserScan& scan);
+  Pose2 pose_of(const Anchor& anchor) const;
+  void keep_node(Stamp stamp, const std::string& robot, const ScanPoints& points, const FrontEnd::Tracked& tracked);
+  void count(ScanFate fate);
+  Twist2 twist_for_straightening() const { return odometry_.twist().value_or(twist_.value_or(Twist2{})); }
+
+  OdometryBuffer odometry_;
+  std::optional<Pose2> T_odom_last_;    ///< odometry at the last scan
+  std::optional<Twist2> twist_;         ///< of the last matched step
+  std::optional<Stamp> last_stamp_;
+  std::vector<float> last_ranges_;
+  std::optional<RadarSweep> last_sweep_;
+  std::optional<Pose2> T_odom_sweep_;
+  bool has_lidar_ = false;
+  std::vector<Anchor> anchors_;         ///< one per scan
+  std::vector<Pose2> T_track_nodes_;    ///< where the front end put each node
+  Pose2 T_odom_robot_;
+};
+
+Result<ScanOutcome> Slam::Impl::add_scan(const LaserScan& scan) {
+  if (const Result<Ok> sound = check(scan); !sound) {
+    ++counters_.malformed;
+    return sound.error();
+  }
+  ++counters_.scans;
+  has_lidar_ = true;
+  if (last_stamp_ == scan.stamp && last_ranges_ == scan.ranges_m && !anchors_.empty()) {
+    ++counters_.duplicates;
+    anchors_.push_back(anchors_.back());
+    return ScanOutcome{scan.stamp, ScanFate::kDuplicate, latest(), std::nullopt, 0};
+  }
+  last_ranges_ = scan.ranges_m;
+  const ScanPoints points = surface_points(scan, params_.beams, twist_for_straightening(), params_.points, smoke_in(scan));
+  return add_points(scan.stamp, scan.robot, points);
+}
+
+Result<ScanOutcome> Slam::Impl::add_sweep(const RadarSweep& sweep) {
+  if (const Result<Ok> sound = check(sweep); !sound) {
+    ++counters_.malformed;
+    return sound.error();
+  }
+  ++counters_.sweeps;
+  if (has_lidar_) {
+    last_sweep_ = sweep;
+    T_odom_sweep_ = odometry_.at(sweep.stamp);
+    return ScanOutcome{sweep.stamp, ScanFate::kMatched, latest(), std::nullopt, 0};
+  }
+  return add_points(sweep.stamp, sweep.robot, surface_points(sweep, twist_for_straightening(), params_.radar, params_.points));
+}
+
+/// Beams that the newest sweep calls smoke; none when there is no fresh sweep.
+std::vector<bool> Slam::Impl::smoke_in(const LaserScan& scan) {
+  if (!last_sweep_ || std::abs(to_seconds(scan.stamp - last_sweep_->stamp)) > kSweepIsFresh_s) return {};
+  Pose2 T_now_then;
+  if (const auto T_odom_now = odometry_.at(scan.stamp); T_odom_now && T_odom_sweep_) T_now_then = T_odom_now->inverse() * *T_odom_sweep_;
+  std::vector<bool> smoke = smoke_beams(scan, params_.beams, *last_sweep_, T_now_then, params_.radar);
+  counters_.smoke_beams += std::count(smoke.begin(), smoke.end(), true);
+  return smoke;
+}
+
+PredictedStep Slam::Impl::predict(Stamp stamp) {
+  const double seconds = last_stamp_ ? to_seconds(stamp - *last_stamp_) : 0;
+  if (seconds < 0) ++counters_.stamps_back;
+  const std::optional<Pose2> T_odom_now = odometry_.at(stamp);
+  const PredictedStep step = predict_step(T_odom_last_, T_odom_now, seconds, twist_, params_.front_end);
+  counters_.jumps += step.jumped;
+  counters_.without_odometry += last_stamp_ && !T_odom_now;
+  T_odom_last_ = T_odom_now;
+  if (T_odom_now) T_odom_robot_ = *T_odom_now;
+  return step;
+}
+
+ScanOutcome Slam::Impl::add_points(Stamp stamp, const std::string& robot, const ScanPoints& points) {
+  const PredictedStep step = predict(stamp);
+  const double seconds = last_stamp_ ? to_seconds(stamp - *last_stamp_) : 0;
+  const Pose2 T_track_before = front_.T_track_robot();
+  const FrontEnd::Tracked tracked = front_.track(points, step);
+  last_stamp_ = stamp;
+  if (tracked.fate == ScanFate::kMatched && seconds > 1e-3) twist_ = twist_of(T_track_before.inverse() * tracked.T_track_robot, seconds);
+  count(tracked.fate);
+  ScanOutcome outcome{stamp, tracked.fate, {}, std::nullopt, tracked.score};
+  if (tracked.node) {
+    keep_node(stamp, robot, points, tracked);
+    outcome.node = back_.graph().nodes.back().id;
+  }
+  anchors_.push_back({stamp, tracked.T_track_robot, std::max(0, static_cast<int>(T_track_nodes_.size()) - 1), tracked.covariance});
+  outcome.pose = latest();
+  return outcome;
+}
+
+void Slam::Impl::keep_node(Stamp stamp, const std::string& robot, const ScanPoints& points, const FrontEnd::Tracked& tracked) {
+  PoseNode node;
+  node.robot = robot;
+  node.stamp = stamp;
+  node.T_map_robot = params_.T_map_start;
+  node.T_odom_robot = T_odom_robot_;
+  node.hits_robot = points.hits_robot;
+  node.free_ends_robot = points.free_ends_robot;
+  PoseEdge edge;
+  edge.T_from_to = tracked.T_node_robot;
+  edge.kind = tracked.kind;
+  Eigen::Matrix3d covariance = 0.5 * (tracked.covariance + tracked.covariance.transpose());
+  covariance.diagonal() += Eigen::Vector3d(1e-6, 1e-6, 1e-7);
+  if (const auto sqrt_info = sqrt_information(covariance)) edge.sqrt_information = *sqrt_info;
+  back_.add_node(std::move(node), points.surface, edge);
+  T_track_nodes_.push_back(tracked.T_track_robot);
+}
+
+void Slam::Impl::count(ScanFate fate) {
+  counters_.too_few_points += fate == ScanFate::kTooFewPoints;
+  counters_.poor_matches += fate == ScanFate::kPoorMatch;
+  counters_.lost += fate == ScanFate::kNewPiece;
+}
+
+/// Between two nodes the correction of each is blended in, so that a scan next to a node moves with it.
+Pose2 Slam::Impl::pose_of(const Anchor& anchor) const {
+  if (T_track_nodes_.empty()) return params_.T_map_start * anchor.T_track_robot;
+  const auto i = static_cast<std::size_t>(anchor.node);
+  const Pose2 from_last = back_.graph().nodes[i].T_map_robot * (T_track_nodes_[i].inverse() * anchor.T_track_robot);
+  if (i + 1 >= T_track_nodes_.size()) return from_last;
+  const Pose2 from_next = back_.graph().nodes[i + 1].T_map_robot * (T_track_nodes_[i + 1].inverse() * anchor.T_track_robot);
+  const auto away = [&](std::size_t node) {
+    const Pose2 step = T_track_nodes_[node].inverse() * anchor.T_track_robot;
+    return step.translation().norm() + 0.5 * std::abs(step.heading());
+  };
+  const double last = away(i), next = away(i + 1);
+  return last + next > 0 ? interpolate(from_last, from_next, last / (last + next)) : from_last;
+}
+
+Pose2 Slam::Impl::T_map_track() const {
+  if (T_track_nodes_.empty()) return params_.T_map_start;
+  return back_.graph().nodes.back().T_map_robot * T_track_nodes_.back().inverse();
+}
+
+StampedPose Slam::Impl::latest() const {
+  StampedPose pose;
+  pose.stamp = last_stamp_.value_or(0);
+  pose.T_map_robot = T_map_track() * front_.T_track_robot();
+  if (!anchors_.empty()) pose.covariance = anchors_.back().covariance;
+  return pose;
+}
+
+Pose2 Slam::Impl::T_map_odom() const {
+  return T_odom_last_ ? T_map_track() * front_.T_track_robot() * T_odom_last_->inverse() : Pose2();
+}
+
+Trajectory Slam::Impl::trajectory() const {
+  Trajectory poses;
+  poses.reserve(anchors_.size());
+  for (const Anchor& anchor : anchors_) poses.push_back({anchor.stamp, pose_of(anchor), anchor.covariance});
+  return poses;
+}
+
+Slam::Slam(const SlamParams& params) : impl_(std::make_unique<Impl>(params)) {}
+Slam::~Slam() = default;
+Slam::Slam(Slam&&) noexcept = default;
+Slam& Slam::operator=(Slam&&) noexcept = default;
+
+void Slam::add_odometry(const Odometry& odometry) { impl_->add_odometry(odometry); }
+Result<ScanOutcome> Slam::add_scan(const LaserScan& scan) { return impl_->add_scan(scan); }
+Result<ScanOutcome> Slam::add_sweep(const RadarSweep& sweep) { return impl_->add_sweep(sweep); }
+
+bool Slam::optimize(const Progress& progress) {
+  const bool moved = impl_->back_.optimize(progress);
+  impl_->counters_.loops_tried = impl_->back_.loops_tried();
+  impl_->counters_.loops_closed = impl_->back_.loops_closed();
+  impl_->counters_.loops_rejected = impl_->back_.loops_rejected();
+  return moved;
+}
+
+void Slam::polish(const Progress& progress) {
+  optimize(progress);
+  impl_->back_.polish(progress);
+}
+
+StampedPose Slam::latest_pose() const { return impl_->latest(); }
+Pose2 Slam::T_map_odom() const { return impl_->T_map_odom(); }
+const PoseGraph& Slam::graph() const { return impl_->back_.graph(); }
+Trajectory Slam::trajectory() const { return impl_->trajectory(); }
+const SlamCounters& Slam::counters() const { return impl_->counters_; }
+
+}  // namespace smokemap
