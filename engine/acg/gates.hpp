@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "acg/acg_params.hpp"
+#include "acg/graph_state.hpp"
+#include "maps/merged_map.hpp"
+
+namespace smokemap {
+
+/// How far each wall may be from where it is expected: little beside walls that are known already, more the farther away
+/// the nearest known wall of its direction is (the plan may be stretched in between).
+/// Cost: walls squared.
+std::vector<double> wall_gates_m(const PlanModel& plan, const GraphState& state, const std::vector<WallState>& walls,
+                                 const std::vector<double>& linked_m, const AcgParams& params);
+
+/// Evidence over which length lets a wall move by itself.
+bool mature(const PlanEdge& wall, double linked_m, const AcgParams& params);
+
+/// Partial views bend no wall: links of walls without mature evidence get no weight.
+void drop_immature(const std::vector<double>& linked_m, const PlanModel& plan, const AcgParams& params,
+                   std::vector<PieceLink>& links);
+
+}  // namespace smokemap

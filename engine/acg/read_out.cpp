@@ -1,0 +1,112 @@
+#include "acg/read_out.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/angle.hpp"
+
+namespace smokemap {
+namespace {
+
+/// Where the undistorted plan would lie: what a wall's displacement is measured from.
+Similarity2 rigid_plan(const SolvedPlan& solved) {
+  std::vector<PointPair> pairs;
+  for (std::size_t i = 0; i < solved.plan->corners.size(); ++i)
+    pairs.push_back({solved.state->corner(static_cast<int>(i)), solved.plan->corners[i], 1.0});
+  const auto fit = fit_similarity(pairs);
+  return fit.ok() ? *fit : Similarity2{};
+}
+
+constexpr double kNothingNear = 0.3;  ///< of a wall's length: pieces within its gate there say that it is misplaced, not missing
+
+double confidence_of(WallState state, const WallEvidence& evidence) {
+  const double length = std::max(0.1, evidence.length_m());
+  switch (state) {
+    case WallState::kConfirmed:
+    case WallState::kMoved: return std::clamp(0.5 + 0.5 * evidence.hit_m() / length, 0.5, 0.98);
+    case WallState::kMissing: return std::clamp(evidence.through_m() / length, 0.3, 0.98);
+    default: return std::clamp(0.6 - 0.5 * evidence.through_m() / length, 0.1, 0.6);
+  }
+}
+
+MergedWall read_wall(const SolvedPlan& solved, std::size_t w, const Similarity2& rigid, const AcgParams& params) {
+  const PlanEdge& edge = solved.plan->walls[w];
+  MergedWall wall;
+  wall.layout_wall = static_cast<int>(w);
+  wall.segment_map = solved.state->segment(edge);
+  const auto plan_at = [&](int c) { return rigid * solved.plan->corners[static_cast<std::size_t>(c)]; };
+  wall.displacement_m = 0.5 * ((plan_at(edge.corner_a) - wall.segment_map.a).norm() +
+                               (plan_at(edge.corner_b) - wall.segment_map.b).norm());
+  wall.state = solved.wall_states[w];
+  if (wall.state == WallState::kConfirmed && wall.displacement_m > params.moved_m) wall.state = WallState::kMoved;
+  wall.confidence = confidence_of(wall.state, solved.evidence[w]);
+  wall.evidence_m = std::max(solved.evidence[w].hit_m(), solved.evidence[w].through_m());
+  return wall;
+}
+
+/// A corner is seen when a wall of it was seen near it.
+std::vector<bool> seen_corners(const SolvedPlan& solved) {
+  std::vector<bool> seen(solved.plan->corners.size(), false);
+  for (std::size_t w = 0; w < solved.plan->walls.size(); ++w) {
+    const WallEvidence& e = solved.evidence[w];
+    if (solved.wall_states[w] == WallState::kMissing || e.hit.empty()) continue;
+    const auto reach = static_cast<std::size_t>(std::max(1.0, 0.6 / std::max(0.01, e.bin_m)));
+    for (std::size_t i = 0; i < e.hit.size(); ++i) {
+      if (e.hit[i] == 0) continue;
+      if (i < reach) seen[static_cast<std::size_t>(solved.plan->walls[w].corner_a)] = true;
+      if (i + reach >= e.hit.size()) seen[static_cast<std::size_t>(solved.plan->walls[w].corner_b)] = true;
+    }
+  }
+  return seen;
+}
+
+void read_links(const SolvedPlan& solved, MergedMap& out) {
+  for (const PieceLink& link : solved.links) {
+    const Pose2 pose = solved.state->pose(link.node);
+    const PlanEdge& wall = solved.plan->walls[static_cast<std::size_t>(link.wall)];
+    for (const int c : {wall.corner_a, wall.corner_b})
+      for (const Point2& end : {link.part_robot.a, link.part_robot.b}) {
+        const Point2 p = pose * end;
+        if ((p - solved.state->corner(c)).norm() > 0.4) continue;
+        const auto state = link.weight > 0.5 ? LinkState::kKept : link.weight > 0.1 ? LinkState::kDoubtful : LinkState::kRejected;
+        out.links.push_back({p, c, state});
+      }
+  }
+}
+
+}  // namespace
+
+WallState judge_wall_state(const WallEvidence& evidence, double linked_m, double near_m, const AcgParams& params) {
+  const double length = std::max(0.05, evidence.length_m());
+  const double hit = evidence.hit_m() / length, through = evidence.through_m() / length;
+  if (through >= params.missing_share && hit < 0.5 * through && near_m < kNothingNear * length) return WallState::kMissing;
+  if (hit >= 0.25 || evidence.hit_m() > params.mature_m || linked_m > params.mature_m) return WallState::kConfirmed;
+  return WallState::kUnseen;
+}
+
+void read_out_plan(const SolvedPlan& solved, const AcgParams& params, MergedMap& out) {
+  const Similarity2 rigid = rigid_plan(solved);
+  for (std::size_t w = 0; w < solved.plan->walls.size(); ++w) out.walls.push_back(read_wall(solved, w, rigid, params));
+  const std::vector<bool> seen = seen_corners(solved);
+  std::vector<PointPair> pairs;
+  for (std::size_t i = 0; i < solved.plan->corners.size(); ++i) {
+    const Point2 p = solved.state->corner(static_cast<int>(i));
+    out.corners.push_back({solved.layout->corners[i].p_px, p, solved.corner_sigma_m[i], seen[i]});
+    pairs.push_back({p, solved.plan->corners[i], solved.corner_sigma_m[i]});
+  }
+  if (auto deformation = Deformation::build(pairs); deformation.ok()) out.layout_to_map = std::move(*deformation);
+  read_links(solved, out);
+}
+
+void read_out_new_walls(const std::vector<NewWall>& walls, MergedMap& out) {
+  for (const NewWall& w : walls) {
+    MergedWall wall;
+    wall.segment_map = w.segment_map;
+    wall.state = WallState::kNew;
+    wall.confidence = w.confidence;
+    wall.evidence_m = w.evidence_m;
+    out.walls.push_back(wall);
+  }
+}
+
+}  // namespace smokemap

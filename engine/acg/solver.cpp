@@ -1,0 +1,206 @@
+#include "acg/solver.hpp"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/SparseCholesky>
+#include <cmath>
+
+#include "acg/residuals/anchor_cost.hpp"
+#include "acg/residuals/drawn_line_cost.hpp"
+#include "acg/residuals/neighbour_stretch_cost.hpp"
+#include "acg/residuals/piece_to_wall_cost.hpp"
+#include "acg/residuals/prior_value_cost.hpp"
+#include "acg/residuals/relative_pose_cost.hpp"
+#include "acg/residuals/strip_stretch_cost.hpp"
+#include "acg/residuals/wall_end_cost.hpp"
+#include "acg/residuals/wall_shape_cost.hpp"
+
+namespace smokemap {
+namespace {
+
+constexpr double kSigmaAnchor_m = 0.05;
+constexpr double kUnmodelled_m = 0.025;  ///< drawn wall thickness against the true one, bias of the sensor
+constexpr double kAcrossShare = 0.01;    ///< of its length a wall may stand off its direction, besides its corners' own error
+
+/// A weight that does not depend on the residual: the robust scheme sets it between solves.
+ceres::LossFunction* weighted(double weight) { return new ceres::ScaledLoss(nullptr, weight, ceres::TAKE_OWNERSHIP); }
+
+class ProblemBuilder {
+ public:
+  ProblemBuilder(const SolveInput& input, const AcgParams& params, GraphState& state)
+      : in_(input), params_(params), state_(state) {}
+
+  void build(ceres::Problem& problem) {
+    add_poses(problem);
+    if (in_.plan == nullptr) return;
+    add_plan(problem);
+    add_lines(problem, 0);
+    add_lines(problem, 1);
+    add_evidence(problem);
+  }
+
+ private:
+  double* pose(std::size_t i) { return state_.poses[i].data(); }
+  double* corner(int i) { return state_.corners[static_cast<std::size_t>(i)].data(); }
+
+  void add_poses(ceres::Problem& problem) {
+    for (std::size_t i = 0; i < state_.poses.size(); ++i) {
+      problem.AddParameterBlock(pose(i), 3);
+      if (i == 0 || in_.poses_fixed) problem.SetParameterBlockConstant(pose(i));
+    }
+    if (in_.poses_fixed) return;
+    for (const PoseEdge& e : in_.edges)
+      problem.AddResidualBlock(RelativePoseCost::Create(e.T_from_to, e.sqrt_information),
+                               e.kind == EdgeKind::kLoop ? new ceres::CauchyLoss(3.0) : nullptr,
+                               pose(static_cast<std::size_t>(e.from)), pose(static_cast<std::size_t>(e.to)));
+  }
+
+  void add_shape(ceres::Problem& problem, const PlanEdge& edge, double along_share, double firmness) {
+    if (!edge.usable || firmness <= 0) return;
+    const double corners = std::sqrt(2.0) * params_.sigma_corner_draw_m;
+    problem.AddResidualBlock(
+        WallShapeCost::Create(edge.length_m, edge.heading_rad, std::hypot(along_share * edge.length_m, corners),
+                              std::hypot(kAcrossShare * edge.length_m, corners)),
+        weighted(firmness), corner(edge.corner_a), corner(edge.corner_b), &state_.turn, &state_.log_scale);
+  }
+
+  void add_plan(ceres::Problem& problem) {
+    problem.AddResidualBlock(PriorValueCost::Create(0, in_.plan->scale_sigma), nullptr, &state_.log_scale);
+    problem.AddParameterBlock(&state_.turn, 1);
+    for (std::size_t w = 0; w < in_.plan->walls.size(); ++w)
+      add_shape(problem, in_.plan->walls[w], params_.sigma_wall_log_length, in_.wall_firmness[w]);
+    for (const PlanEdge& g : in_.plan->gaps) add_shape(problem, g, 1.5 * params_.sigma_wall_log_length, 1);
+  }
+
+  void add_lines(ceres::Problem& problem, int axis) {
+    const auto& drawn = in_.plan->lines[static_cast<std::size_t>(axis)];
+    const auto& line_of = in_.plan->line_of_corner[static_cast<std::size_t>(axis)];
+    auto& lines = state_.lines[static_cast<std::size_t>(axis)];
+    const double heading = in_.plan->axis_rad + axis * kPi / 2;
+    for (std::size_t c = 0; c < line_of.size(); ++c)
+      problem.AddResidualBlock(DrawnLineCost::Create(heading, params_.sigma_corner_draw_m), new ceres::CauchyLoss(2.0),
+                               corner(static_cast<int>(c)), &state_.turn, &lines[static_cast<std::size_t>(line_of[c])]);
+    const double sigma = params_.sigma_wall_log_length;
+    for (std::size_t k = 0; k + 1 < drawn.size(); ++k) {
+      const double width = drawn[k + 1] - drawn[k];
+      if (k == 0) {
+        problem.AddResidualBlock(StripStretchCost::Create(width, sigma), nullptr, &lines[0], &lines[1], &state_.log_scale);
+        continue;
+      }
+      const double before = drawn[k] - drawn[k - 1], apart = 0.5 * (width + before);
+      const double correlation = std::exp(-apart / (0.6 * params_.stretch_length_m));
+      problem.AddResidualBlock(
+          NeighbourStretchCost::Create(before, width, correlation, sigma * std::sqrt(1 - correlation * correlation)),
+          nullptr, &lines[k - 1], &lines[k], &lines[k + 1], &state_.log_scale);
+    }
+  }
+
+  void add_evidence(ceres::Problem& problem) {
+    for (const PieceLink& link : in_.links) {
+      if (link.weight < 1e-3) continue;
+      const PlanEdge& wall = in_.plan->walls[static_cast<std::size_t>(link.wall)];
+      problem.AddResidualBlock(
+          PieceToWallCost::Create(link.part_robot, link.side, wall.half_thickness_m, params_.sigma_point_m),
+          weighted(link.weight), pose(link.node), corner(wall.corner_a), corner(wall.corner_b));
+    }
+    for (const EndLink& end : in_.ends)
+      if (end.weight > 1e-3)
+        problem.AddResidualBlock(WallEndCost::Create(end.end_robot, std::hypot(params_.sigma_end_m, end.sigma_m)),
+                                 weighted(end.weight), pose(end.node), corner(end.corner), corner(end.other_corner));
+    for (const AnchorLink& a : in_.anchors)
+      problem.AddResidualBlock(AnchorCost::Create(a.shares, a.p_map, kSigmaAnchor_m), nullptr, corner(a.corners[0]),
+                               corner(a.corners[1]), corner(a.corners[2]));
+  }
+
+  const SolveInput& in_;
+  const AcgParams& params_;
+  GraphState& state_;
+};
+
+class StopWhenAsked final : public ceres::IterationCallback {
+ public:
+  explicit StopWhenAsked(const Progress& progress) : progress_(progress) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    return progress_.cancelled() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const Progress& progress_;
+};
+
+/// J^T J of the whole problem, with a whisper on the diagonal for what nothing speaks about.
+Eigen::SparseMatrix<double> normal_matrix(const ceres::CRSMatrix& jacobian) {
+  using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  const Eigen::Map<const Rows> rows(jacobian.num_rows, jacobian.num_cols, static_cast<Eigen::Index>(jacobian.values.size()),
+                                    jacobian.rows.data(), jacobian.cols.data(), jacobian.values.data());
+  const Eigen::SparseMatrix<double> columns(rows);
+  Eigen::SparseMatrix<double> normal = columns.transpose() * columns;
+  Eigen::SparseMatrix<double> whisper(normal.rows(), normal.cols());
+  whisper.setIdentity();
+  normal += 1e-4 * whisper;
+  return normal;
+}
+
+}  // namespace
+
+Result<Ok> solve(const SolveInput& input, const AcgParams& params, const Progress& progress, GraphState& state) {
+  if (progress.cancelled()) return fail(Errc::kCancelled, "stopped while merging plan and map");
+  GraphState work = state;
+  ceres::Problem problem;
+  ProblemBuilder(input, params, work).build(problem);
+  StopWhenAsked stop(progress);
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.max_num_iterations = input.iterations;
+  options.function_tolerance = 1e-4;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  options.callbacks.push_back(&stop);
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  if (progress.cancelled()) return fail(Errc::kCancelled, "stopped while merging plan and map");
+  if (!summary.IsSolutionUsable())
+    return fail(Errc::kNotConverged, "merging plan and map gave no usable answer: " + summary.message);
+  state = std::move(work);
+  return Ok{};
+}
+
+Result<std::vector<double>> corner_sigmas_m(const SolveInput& input, const AcgParams& params, GraphState& state) {
+  std::vector<double> sigmas(state.corners.size(), 0);
+  if (input.plan == nullptr) return sigmas;
+  ceres::Problem problem;
+  ProblemBuilder(input, params, state).build(problem);
+  ceres::Problem::EvaluateOptions what;
+  std::vector<double*> blocks;
+  problem.GetParameterBlocks(&blocks);
+  std::vector<double*> free_blocks;
+  std::vector<int> first_column(state.corners.size(), -1);
+  int column = 0;
+  for (double* block : blocks) {
+    if (problem.IsParameterBlockConstant(block)) continue;
+    free_blocks.push_back(block);
+    const auto* begin = reinterpret_cast<const std::array<double, 2>*>(block);
+    if (begin >= state.corners.data() && begin < state.corners.data() + state.corners.size())
+      first_column[static_cast<std::size_t>(begin - state.corners.data())] = column;
+    column += problem.ParameterBlockSize(block);
+  }
+  what.parameter_blocks = free_blocks;
+  ceres::CRSMatrix jacobian;
+  if (!problem.Evaluate(what, nullptr, nullptr, nullptr, &jacobian))
+    return fail(Errc::kNotConverged, "the sigmas of the merged map could not be worked out");
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(normal_matrix(jacobian));
+  if (factor.info() != Eigen::Success)
+    return fail(Errc::kNotConverged, "the sigmas of the merged map could not be worked out");
+  for (std::size_t c = 0; c < sigmas.size(); ++c) {
+    if (first_column[c] < 0) continue;
+    double variance = 0;
+    for (int k = 0; k < 2; ++k) {
+      const Eigen::VectorXd unit = Eigen::VectorXd::Unit(jacobian.num_cols, first_column[c] + k);
+      variance += 0.5 * factor.solve(unit)[first_column[c] + k];
+    }
+    sigmas[c] = std::hypot(std::sqrt(std::max(0.0, variance)), kUnmodelled_m);
+  }
+  return sigmas;
+}
+
+}  // namespace smokemap
