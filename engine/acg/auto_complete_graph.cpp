@@ -190,7 +190,7 @@ Result<Ok> AutoCompleteGraph::Impl::round(Learnt& l, const std::vector<bool>& us
     link.weight = robust_weight(link.misfit_m, std::max(kFinest_m, sharpness * gates[static_cast<std::size_t>(link.wall)]));
   l.linked_m = linked_length_m(input.links, *plan, l.state);
   l.near_m = linked_length_m(input.links, *plan, l.state, 0);
-  drop_immature(l.linked_m, *plan, params, input.links);
+  drop_immature(l.near_m, *plan, params, input.links);
   judge_walls(beams.walls, l);
   for (int k = 0; k < kReweights; ++k) {
     if (const auto done = solve(input, params, progress, l.state); !done) return done.error();
@@ -221,7 +221,7 @@ Result<Ok> AutoCompleteGraph::Impl::take_up(Learnt& l, const Progress& progress)
     l.taken_way_m = std::min(all, l.taken_way_m + kTakeUp_m);
     std::vector<bool> use = nodes.spaced();
     for (std::size_t i = 0; i < use.size(); ++i) use[i] = use[i] && nodes.way_m()[i] <= l.taken_way_m;
-    for (const double sharpness : {0.6, 0.3})
+    for (const double sharpness : {1.0, 0.4})
       if (const auto done = round(l, use, sharpness, true, progress, nullptr); !done) return done.error();
     progress.tell(0.6 * l.taken_way_m / std::max(1e-6, all), "taking up the plan");
   }
