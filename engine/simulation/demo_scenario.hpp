@@ -33,7 +33,7 @@ struct DemoScenario {
   StartHint start;                  ///< with the error of a finger: about 0.2 m and 3 degrees
   StartHint true_start;
   Point2 p_world_fire = Point2::Zero();
-  std::string far_room;             ///< a room that cannot be seen from the start
+  std::string far_room;             ///< a room that cannot be seen from the start; the way is hazy at most
   Point2 p_world_far_room = Point2::Zero();
   Point2 far_room_px = Point2::Zero();  ///< the same place on the plan
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -17,9 +18,10 @@ struct PlanPictureParams {
   bool doors = true;                ///< arcs in the gaps
   bool windows = true;
   bool route = true;                ///< green arrows along the corridors
-  bool signs = true;                ///< red, green and blue squares
+  bool signs = true;                ///< red, green and blue symbols
+  bool room_names = true;
   bool sheet = true;                ///< title, legend, frame, text
-  std::string title = "Flucht- und Rettungsplan";
+  std::string title = "Evacuation plan";
   std::optional<Point2> you_are_here;  ///< plan metres
 
   bool photo = false;               ///< as taken by a hand-held camera
@@ -37,6 +39,8 @@ struct PlanPicture {
   SheetHomography homography;        ///< photo -> sheet
   double metres_per_pixel = 0;       ///< of the drawing's own metres (mean true scale differs by the distortion)
   Point2 origin_plan = Point2::Zero();  ///< plan metres at pixel (0, 0)
+  std::vector<LayoutSign> signs;     ///< of the drawing, without those of the legend; layout_px
+  std::optional<Point2> you_are_here_px;
 
   /// Plan metres (y up) <-> pixels of the sheet (layout_px, y down).
   Point2 to_pixels(const Point2& p_plan) const;

@@ -13,7 +13,7 @@ struct RadarParams {
   int azimuths = 200;
   int bins = 400;
   double bin_m = 0.0375;
-  double turn_s = 0.402;
+  double turn_s = 0.40;
   double beam_width_rad = 0.0436;      ///< half power, 2.5 deg
   double side_lobe_db = -22;
   double snr_db = 25;                  ///< brick, square on, at 5 m, over the receiver's noise

@@ -25,7 +25,7 @@ struct DriveParams {
   double sigma_way_per_turn = 0.005;      ///< m per sqrt(rad)     (alpha 4)
   double sigma_scale = 0.02;              ///< systematic, drawn once a robot: wheel size
   double sigma_turn_scale = 0.02;         ///< systematic: wheel distance
-  double sigma_bend_rad_per_m = 0.01;     ///< systematic: unequal wheels
+  double sigma_bend_rad_per_m = 0.005;    ///< systematic: unequal wheels
   Result<Ok> validate() const;
 };
 
