@@ -1,7 +1,7 @@
 # Everything third-party, from Debian 12. Imported targets only: their headers count as system headers.
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(OpenCV 4 REQUIRED COMPONENTS core imgproc imgcodecs calib3d)
+find_package(OpenCV 4 REQUIRED COMPONENTS core imgproc imgcodecs calib3d ximgproc)
 find_package(Ceres 2 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(spdlog REQUIRED)

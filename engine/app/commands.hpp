@@ -19,5 +19,6 @@ struct Outcome {
 // One function a subcommand, each in its own file: adds the options and the callback that does the work.
 // Options live as long as the parser: keep them in a shared_ptr captured by the callback.
 void add_layout(CLI::App& app, Outcome& outcome);
+void add_sketch(CLI::App& app, Outcome& outcome);
 
 }  // namespace smokemap::app

@@ -25,6 +25,7 @@ int run(int argc, char** argv) {
   Outcome outcome;
   app.add_flag("--json", outcome.json, "also print errors as JSON on standard output");
   add_layout(app, outcome);
+  add_sketch(app, outcome);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -5,9 +5,9 @@
 #include <exception>
 #include <string>
 
+#include "grids/paper_view.hpp"
 #include "layout/ink_stroke.hpp"
 #include "layout/openings.hpp"
-#include "layout/picture.hpp"
 #include "layout/rooms.hpp"
 #include "layout/sheet.hpp"
 #include "layout/signs.hpp"
@@ -73,7 +73,7 @@ Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& 
     reading.sheet_confidence = proposal.confidence;
   }
 
-  const WorkPicture work = at_work_size(reading.rectified, params);
+  const WorkPicture work = at_work_size(reading.rectified, params.min_long_side_px, params.work_long_side_px);
   progress.tell(0.15, "light");
   const PaperView view = divide_light(work.bgr, params.background_share);
   const Signs signs = find_signs(view, params);

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "grids/paper_view.hpp"
 #include "layout/layout_params.hpp"
-#include "layout/picture.hpp"
 #include "maps/layout_map.hpp"
 
 namespace smokemap {

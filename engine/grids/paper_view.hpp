@@ -3,7 +3,6 @@
 #include <opencv2/core.hpp>
 
 #include "core/result.hpp"
-#include "layout/layout_params.hpp"
 
 namespace smokemap {
 
@@ -16,7 +15,8 @@ struct WorkPicture {
   cv::Mat bgr;
   double scale = 1;
 };
-WorkPicture at_work_size(const cv::Mat& bgr, const LayoutParams& params);
+/// Shrinks a long side over `max_long_side_px`, enlarges one under `min_long_side_px` (at most twice).
+WorkPicture at_work_size(const cv::Mat& bgr, double min_long_side_px, double max_long_side_px);
 
 /// A picture with the light divided out: 255 = paper, whatever the shadow.
 struct PaperView {

@@ -1,4 +1,4 @@
-#include "layout/picture.hpp"
+#include "grids/paper_view.hpp"
 
 #include <algorithm>
 #include <array>
@@ -34,11 +34,11 @@ Result<cv::Mat> as_bgr(const cv::Mat& picture) {
   }
 }
 
-WorkPicture at_work_size(const cv::Mat& bgr, const LayoutParams& params) {
+WorkPicture at_work_size(const cv::Mat& bgr, double min_long_side_px, double max_long_side_px) {
   const double side = std::max(bgr.rows, bgr.cols);
   double scale = 1;
-  if (side > params.work_long_side_px) scale = params.work_long_side_px / side;
-  if (side < params.min_long_side_px) scale = std::min(2.0, params.min_long_side_px / side);
+  if (side > max_long_side_px) scale = max_long_side_px / side;
+  if (side < min_long_side_px) scale = std::min(2.0, min_long_side_px / side);
   if (scale == 1) return {bgr, 1};
   WorkPicture work;
   work.scale = scale;
