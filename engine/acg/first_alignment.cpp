@@ -161,14 +161,14 @@ std::vector<Point2> first_hits(const std::vector<NodeView>& views, const GraphSt
   return thinned;
 }
 
-Result<Alignment> align_plan(const PlanModel& plan, const std::vector<Point2>& hits_map, const Point2& robot_map,
+Result<PlanAlignment> align_plan(const PlanModel& plan, const std::vector<Point2>& hits_map, const Point2& robot_map,
                              const AlignmentSearch& search) {
   if (hits_map.size() < 20) return fail(Errc::kDegenerate, "too little seen to align the plan");
   std::vector<Point2> hits;
   for (const Point2& p : hits_map) hits.push_back(p - robot_map);
   const WallField coarse(plan, 0.35), fine(plan, 0.15);
   Trial best;
-  Alignment out;
+  PlanAlignment out;
   out.margin = 1;
   if (search.guess) {
     const Trial start{search.guess->inverse() * robot_map, search.guess->T_a_b.heading(), search.guess->scale, -1};

@@ -17,7 +17,7 @@ struct AlignmentSearch {
   double scale_sigma = 0.08;
 };
 
-struct Alignment {
+struct PlanAlignment {
   Similarity2 map_from_layout;
   double explained = 0;  ///< share of the hits within 20 cm of a wall's face
   double margin = 0;     ///< by how much it beats the best alignment somewhere else, as a share; 1 with a guess
@@ -26,7 +26,7 @@ struct Alignment {
 /// The turn, scale and shift of the plan under which the hits of these nodes lie best on its walls: exhaustive, coarse to
 /// fine, on a distance field. Only nodes within a few metres of way should be given: the plan is stretched.
 /// kDegenerate without enough hits.
-Result<Alignment> align_plan(const PlanModel& plan, const std::vector<Point2>& hits_map, const Point2& robot_map,
+Result<PlanAlignment> align_plan(const PlanModel& plan, const std::vector<Point2>& hits_map, const Point2& robot_map,
                              const AlignmentSearch& search);
 
 /// The hits of the nodes up to a given way from the first, thinned to a few hundred.

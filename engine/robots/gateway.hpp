@@ -33,7 +33,7 @@ struct GatewayAlarm {
 
 struct RobotLink {
   std::string id;  ///< the namespace of its topics; "robot" where there is none
-  LinkState link = LinkState::kLost;
+  LinkFreshness link = LinkFreshness::kLost;
   Stamp last_heard = 0;                        ///< our clock
   bool has_radar = false;
   bool takes_velocity = false;                 ///< somebody subscribes its cmd_vel

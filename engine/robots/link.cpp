@@ -4,19 +4,19 @@
 
 namespace smokemap {
 
-const char* to_string(LinkState state) {
+const char* to_string(LinkFreshness state) {
   switch (state) {
-    case LinkState::kFresh: return "fresh";
-    case LinkState::kStale: return "stale";
-    case LinkState::kLost: return "lost";
+    case LinkFreshness::kFresh: return "fresh";
+    case LinkFreshness::kStale: return "stale";
+    case LinkFreshness::kLost: return "lost";
   }
-  broken_promise("a known LinkState", __FILE__, __LINE__);
+  broken_promise("a known LinkFreshness", __FILE__, __LINE__);
 }
 
-LinkState link_state(Stamp last_heard, Stamp now, const LinkParams& params) {
+LinkFreshness link_state(Stamp last_heard, Stamp now, const LinkParams& params) {
   const double silent_s = to_seconds(now - last_heard);
-  if (silent_s < params.stale_after_s) return LinkState::kFresh;
-  return silent_s < params.lost_after_s ? LinkState::kStale : LinkState::kLost;
+  if (silent_s < params.stale_after_s) return LinkFreshness::kFresh;
+  return silent_s < params.lost_after_s ? LinkFreshness::kStale : LinkFreshness::kLost;
 }
 
 }  // namespace smokemap

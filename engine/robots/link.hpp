@@ -6,15 +6,15 @@ namespace smokemap {
 
 /// How fresh a robot's data is, by our own clock at reception. Deadline and liveliness are never requested from a robot:
 /// ROS writers offer neither, and asking for them means to receive nothing at all.
-enum class LinkState { kFresh, kStale, kLost };
+enum class LinkFreshness { kFresh, kStale, kLost };
 
-const char* to_string(LinkState state);
+const char* to_string(LinkFreshness state);
 
 struct LinkParams {
   double stale_after_s = 1.0;
   double lost_after_s = 5.0;
 };
 
-LinkState link_state(Stamp last_heard, Stamp now, const LinkParams& params);
+LinkFreshness link_state(Stamp last_heard, Stamp now, const LinkParams& params);
 
 }  // namespace smokemap

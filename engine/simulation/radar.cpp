@@ -35,7 +35,7 @@ double power_of(double db) { return std::pow(10.0, db / 10); }
 /// One azimuth: collects mean power per bin.
 class BeamPainter {
  public:
-  BeamPainter(const SegmentWorld& world, const RadarParams& params) : world_(world), params_(params) {
+  BeamPainter(const SegmentWorld& world, const RadarSimParams& params) : world_(world), params_(params) {
     const Surface brick = surface_of(Material::kBrick, params.transmission);
     gain_ = power_of(params.snr_db) * std::pow(5.0, 3) / (brick.echo * (1 + params.diffuse));
     echo_.resize(static_cast<std::size_t>(params.bins));
@@ -80,7 +80,7 @@ class BeamPainter {
   }
 
   const SegmentWorld& world_;
-  const RadarParams& params_;
+  const RadarSimParams& params_;
   double gain_ = 1;
   std::vector<double> echo_;
 };
@@ -91,7 +91,7 @@ struct SubRay {
 };
 
 /// Rays across the Gaussian beam, and one on either side for the side lobes.
-std::vector<SubRay> sub_rays(const RadarParams& params) {
+std::vector<SubRay> sub_rays(const RadarSimParams& params) {
   std::vector<SubRay> rays;
   const double sigma = params.beam_width_rad / 2.355 / std::sqrt(2.0);  // two-way pattern
   double sum = 0;
@@ -107,8 +107,8 @@ std::vector<SubRay> sub_rays(const RadarParams& params) {
 
 }  // namespace
 
-Result<Ok> RadarParams::validate() const {
-  return ParamCheck("RadarParams")
+Result<Ok> RadarSimParams::validate() const {
+  return ParamCheck("RadarSimParams")
       .in_range("azimuths", azimuths, 1, 4000)
       .in_range("bins", bins, 8, 8000)
       .in_range("bin_m", bin_m, 0.005, 2)
@@ -126,7 +126,7 @@ Result<Ok> RadarParams::validate() const {
 }
 
 RadarSweep simulate_sweep(const SegmentWorld& world, const Pose2& T_world_start, const Pose2& T_world_end, Stamp stamp,
-                          const RadarParams& params, std::mt19937_64& random) {
+                          const RadarSimParams& params, std::mt19937_64& random) {
   ENGINE_EXPECT(params.validate().ok());
   RadarSweep sweep;
   sweep.stamp = stamp;

@@ -9,7 +9,7 @@
 namespace smokemap {
 
 /// A spinning FMCW radar of the MPR class (Fritsche et al. 2016: 94 GHz, 2.5 turns a second). Smoke does not matter to it.
-struct RadarParams {
+struct RadarSimParams {
   int azimuths = 200;
   int bins = 400;
   double bin_m = 0.0375;
@@ -30,7 +30,7 @@ struct RadarParams {
 /// One turn while the robot moves from T_world_start to T_world_end; every azimuth at its own pose.
 /// Power of a bin: exponential with the mean (echo + 1), as the sum of speckle and receiver noise is.
 RadarSweep simulate_sweep(const SegmentWorld& world, const Pose2& T_world_start, const Pose2& T_world_end, Stamp stamp,
-                          const RadarParams& params, std::mt19937_64& random);
+                          const RadarSimParams& params, std::mt19937_64& random);
 
 /// The strongest bin of every azimuth as a scan, as some drivers deliver it; no echo below `floor_db` = infinity.
 LaserScan strongest_returns(const RadarSweep& sweep, double floor_db = 12);

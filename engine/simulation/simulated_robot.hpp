@@ -26,7 +26,7 @@ struct SimulatedRobotParams {
   std::uint64_t index = 1;          ///< its noise streams: adding a robot does not change another's noise
   std::uint64_t seed = 1;
   LidarParams lidar;
-  RadarParams radar;
+  RadarSimParams radar;
   DriveParams drive;
   bool with_lidar = true;
   bool with_radar = true;

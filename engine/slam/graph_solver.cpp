@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "slam/relative_pose_cost.hpp"
+#include "slam/graph_edge_cost.hpp"
 
 namespace smokemap {
 namespace {
@@ -20,7 +20,7 @@ Result<ceres::Solver::Summary> solve_once(const PoseGraph& graph, State& state, 
   ceres::Problem problem(ownership);
   ceres::CauchyLoss robust(kernel);
   for (const PoseEdge& edge : graph.edges) {
-    auto* cost = new RelativePoseCost(edge.T_from_to, edge.sqrt_information);
+    auto* cost = new GraphEdgeCost(edge.T_from_to, edge.sqrt_information);
     problem.AddResidualBlock(cost, edge.kind == EdgeKind::kLoop ? &robust : nullptr,
                              state[static_cast<std::size_t>(edge.from)].data(), state[static_cast<std::size_t>(edge.to)].data());
   }

@@ -137,6 +137,23 @@ TEST(Layering, FilesAndFunctionsKeepTheirSize) {
     }
 }
 
+TEST(Layering, EveryTypeInAHeaderHasANameOfItsOwn) {
+  // All of the engine shares one namespace: two types of one name in one program are undefined behaviour without a word.
+  static const std::regex definition(R"(^(struct|class|enum class) ([A-Z][A-Za-z0-9]+)[^;]*\{)");
+  std::map<std::string, fs::path> seen;
+  for (const char* folder : {"/engine", "/server"})
+    for (const auto& entry : fs::recursive_directory_iterator(SMOKEMAP_SOURCE_DIR + std::string(folder))) {
+      if (entry.path().extension() != ".hpp") continue;
+      std::istringstream lines(read_file(entry.path()));
+      for (std::string line; std::getline(lines, line);) {
+        std::smatch match;
+        if (!std::regex_search(line, match, definition)) continue;
+        const auto [it, fresh] = seen.emplace(folder + std::string(" ") + match[2].str(), entry.path());
+        EXPECT_TRUE(fresh) << match[2] << " is defined in " << it->second << " and in " << entry.path();
+      }
+    }
+}
+
 TEST(Rules, RefuseNeighboursAndUpperFloors) {
   std::istringstream in("floor 0 core\nfloor 1 geometry\nfloor 1 grids\nside 1 tools\ntop app\nhome boost boost/ : app\n");
   const Rules rules = read_rules(in);

@@ -178,7 +178,7 @@ TEST(RobotGateway, FindsRobotsByTheirTopicsAndKeepsThemApart) {
     return here.link("red").scans > 0 && here.link("blue").scans > 0;
   }));
   for (const LaserScan& scan : here.scans.all()) EXPECT_EQ(scan.stamp, scan.robot == "red" ? 1 : 2);
-  EXPECT_EQ(here.link("red").link, LinkState::kFresh);
+  EXPECT_EQ(here.link("red").link, LinkFreshness::kFresh);
 }
 
 TEST(RobotGateway, TakesNoCommandsForARobotThatHasGone) {

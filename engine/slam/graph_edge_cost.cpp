@@ -1,10 +1,10 @@
-#include "slam/relative_pose_cost.hpp"
+#include "slam/graph_edge_cost.hpp"
 
 #include <cmath>
 
 namespace smokemap {
 
-bool RelativePoseCost::Evaluate(double const* const* poses, double* residuals, double** jacobians) const {
+bool GraphEdgeCost::Evaluate(double const* const* poses, double* residuals, double** jacobians) const {
   const Eigen::Map<const Eigen::Vector3d> i(poses[0]), j(poses[1]);
   const double c = std::cos(i.z()), s = std::sin(i.z());
   const Eigen::Vector2d d = j.head<2>() - i.head<2>();

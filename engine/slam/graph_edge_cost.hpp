@@ -10,9 +10,9 @@ namespace smokemap {
 
 /// r = sqrt_info * [ R(h_i)^T (t_j - t_i) - z.t ; wrap(h_j - h_i - z.h) ],   poses as (x, y, heading), map frame.
 /// In standard deviations. Analytic derivatives.
-class RelativePoseCost final : public ceres::SizedCostFunction<3, 3, 3> {
+class GraphEdgeCost final : public ceres::SizedCostFunction<3, 3, 3> {
  public:
-  RelativePoseCost(const Pose2& z_i_j, const Eigen::Matrix3d& sqrt_info) : z_(z_i_j), sqrt_info_(sqrt_info) {}
+  GraphEdgeCost(const Pose2& z_i_j, const Eigen::Matrix3d& sqrt_info) : z_(z_i_j), sqrt_info_(sqrt_info) {}
   bool Evaluate(double const* const* poses, double* residuals, double** jacobians) const override;
 
  private:
