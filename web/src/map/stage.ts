@@ -1,0 +1,121 @@
+/**
+ * One canvas of the page: OpenLayers' map and view with our own coordinates (metres of the map, or pixels of a picture with
+ * y flipped) and our own painters. Gestures do not come from OpenLayers: `tools` decides what a finger means and moves the
+ * view with `setView`.
+ */
+import OlMap from 'ol/Map.js';
+import Projection from 'ol/proj/Projection.js';
+import View from 'ol/View.js';
+import { type Bounds, isEmpty } from '../geometry/bounds';
+import { type Limits, middle, zoomAbout } from '../geometry/gesture';
+import { type ScreenPoint, type ViewPoint, viewPoint } from '../geometry/points';
+import { type Size, toScreen, toView, type ViewState } from '../geometry/similarity';
+import { CanvasLayer } from './canvas_layer';
+import type { Palette } from './palette';
+import type { Painter } from './painter';
+
+/** Plain Cartesian units: no globe, no degrees. */
+const kFlat = new Projection({ code: 'smokemap:flat', units: 'm', global: false, worldExtent: [-1e6, -1e6, 1e6, 1e6] });
+
+export const kMapLimits: Limits = { minResolution: 0.002, maxResolution: 0.5 };
+export const kPictureLimits: Limits = { minResolution: 0.05, maxResolution: 12 };
+
+export class Stage {
+  readonly limits: Limits;
+  readonly #map: OlMap;
+  readonly #view: View;
+  readonly #layers: readonly CanvasLayer[];
+
+  /** @param layers painters per canvas, bottom first; what changes often goes on a canvas of its own. */
+  constructor(target: HTMLElement, layers: readonly (readonly Painter[])[], palette: () => Palette, limits: Limits) {
+    this.limits = limits;
+    this.#layers = layers.map((painters) => new CanvasLayer(painters, palette));
+    this.#view = new View({
+      projection: kFlat,
+      center: [0, 0],
+      resolution: Math.sqrt(limits.minResolution * limits.maxResolution),
+      minResolution: limits.minResolution,
+      maxResolution: limits.maxResolution,
+      constrainRotation: false,
+      smoothResolutionConstraint: false,
+      showFullExtent: true,
+    });
+    this.#map = new OlMap({ target, layers: [...this.#layers], view: this.#view, controls: [], interactions: [] });
+  }
+
+  get size(): Size {
+    const [width = 0, height = 0] = this.#map.getSize() ?? [];
+    return { width, height };
+  }
+
+  get view(): ViewState {
+    const [x = 0, y = 0] = this.#view.getCenter() ?? [];
+    return { center: viewPoint(x, y), resolution: this.#view.getResolution() ?? 1, rotation: this.#view.getRotation() };
+  }
+
+  setView({ center, resolution, rotation }: ViewState): void {
+    this.#view.setCenter([center[0], center[1]]);
+    this.#view.setResolution(resolution);
+    this.#view.setRotation(rotation);
+  }
+
+  toScreen = (p: ViewPoint): ScreenPoint => toScreen(this.view, this.size, p);
+  toView = (p: ScreenPoint): ViewPoint => toView(this.view, this.size, p);
+
+  zoom(factor: number, at: ScreenPoint = middle(this.size)): void {
+    this.setView(zoomAbout(this.view, at, factor, this.size, this.limits));
+  }
+
+  /** Tells of every turn of the view; returns how to stop listening. */
+  onTurn(listener: (rotation: number) => void): () => void {
+    const tell = (): void => listener(this.#view.getRotation());
+    this.#view.on('change:rotation', tell);
+    return () => this.#view.un('change:rotation', tell);
+  }
+
+  /** Tells when the view came to rest after moving. */
+  onMoved(listener: () => void): () => void {
+    this.#map.on('moveend', listener);
+    return () => this.#map.un('moveend', listener);
+  }
+
+  straighten(): void {
+    this.#view.setRotation(0);
+  }
+
+  centerOn(p: ViewPoint): void {
+    this.#view.setCenter([p[0], p[1]]);
+  }
+
+  /** Shows all of `bounds` with `padding` CSS pixels around it. Without bounds nothing moves. */
+  fit(bounds: Bounds, padding = 32): boolean {
+    const { width, height } = this.size;
+    if (isEmpty(bounds) || width === 0 || height === 0) return false;
+    const across = (bounds.maxX - bounds.minX) / Math.max(1, width - 2 * padding);
+    const up = (bounds.maxY - bounds.minY) / Math.max(1, height - 2 * padding);
+    const resolution = Math.min(this.limits.maxResolution, Math.max(this.limits.minResolution, across, up));
+    const center = viewPoint((bounds.minX + bounds.maxX) / 2, (bounds.minY + bounds.maxY) / 2);
+    this.setView({ center, resolution, rotation: 0 });
+    return true;
+  }
+
+  /** Something that painters show has changed. */
+  refresh(): void {
+    this.#map.render();
+  }
+
+  /** The element changed its size. */
+  resize(): void {
+    this.#map.updateSize();
+  }
+
+  /** Milliseconds of script in the last painted frame, over all canvases. */
+  get lastPaintMs(): number {
+    return this.#layers.reduce((sum, layer) => sum + layer.lastPaintMs, 0);
+  }
+
+  dispose(): void {
+    this.#map.setTarget(undefined);
+    this.#map.dispose();
+  }
+}

@@ -1,0 +1,227 @@
+/**
+ * What the page knows and can do, for every component: the world as the server tells it, this person's own acts on top,
+ * the state of the link, and one way to send a command. Components read runes; nothing here touches the page.
+ */
+import { mapPoint } from '../../geometry/points';
+import type { Api } from '../../link/api';
+import { LiveLink, type Surroundings } from '../../link/live_link';
+import type { Entry, Outbox } from '../../link/outbox';
+import { isReflected, type PendingCommand, withPending } from '../../model/pending';
+import { linkWord, type LinkWord } from '../../model/status';
+import { TileStore } from '../../model/tiles';
+import { emptyHistory, type History, record, redo, undo } from '../../model/undo';
+import { apply, kEmptyWorld, type World } from '../../model/world';
+import { type Command, mayCommand } from '../../wire/commands';
+import type { Message } from '../../wire/messages';
+import type { Role } from '../../wire/parts';
+import { t } from '../i18n.svelte';
+import { Stop } from './stop.svelte';
+import { Toasts } from './toasts.svelte';
+
+export type Mode = 'prepare' | 'sketch' | 'match' | 'operate' | 'review';
+export const kModes: readonly Mode[] = ['prepare', 'sketch', 'match', 'operate', 'review'];
+
+export interface Identity {
+  readonly token: string;
+  readonly device: string;
+  readonly name: string;
+  readonly role: Role;
+}
+
+export type InkListener = (ink: Message<'ink'>) => void;
+
+const kTickMs = 500;
+/** An acknowledged act whose effect does not show within this time is no longer drawn as ours. */
+const kForgetAckedMs = 3_000;
+
+export class Session {
+  readonly me: Identity;
+  readonly api: Api;
+  readonly tiles = new TileStore();
+  readonly toasts = new Toasts();
+  readonly stop: Stop;
+
+  mode = $state<Mode>('operate');
+  nowMs = $state(0);
+  linkWord = $state<LinkWord>('connecting');
+  linkAgeMs = $state<number | null>(null);
+  resolutionM = $state(0.05);
+  pending = $state.raw<readonly PendingCommand[]>([]);
+  history = $state.raw<History<Command>>(emptyHistory());
+  #published = $state.raw<World>(kEmptyWorld);
+  /** What everybody did, as the server tells it, with this person's waiting acts on top. */
+  readonly world: World;
+
+  /** Newer than what is published: a burst of deltas becomes one update of the page. */
+  #latest: World = kEmptyWorld;
+  #publishing = false;
+  #epoch = 0;
+  readonly #acked = new Map<string, { command: Command; createdMs: number; ackedMs: number }>();
+  readonly #outbox: Outbox;
+  readonly #around: Surroundings;
+  readonly #link: LiveLink;
+  readonly #inkListeners = new Set<InkListener>();
+
+  constructor(me: Identity, api: Api, outbox: Outbox, around: Surroundings, onUnauthorised: () => void) {
+    this.me = me;
+    this.world = $derived(withPending(this.#published, this.pending, me.name));
+    this.api = api;
+    this.#outbox = outbox;
+    this.#around = around;
+    this.#link = new LiveLink(around, this.#handlers(onUnauthorised), outbox, me.token, () => this.#position());
+    this.stop = new Stop(() => this.send({ name: 'emergency_stop', data: { robot: '', engaged: true } }), around.after);
+  }
+
+  start(): void {
+    this.#link.start();
+    this.#tick();
+  }
+
+  get serverNowMs(): number {
+    return this.#link.serverNowMs();
+  }
+  get link(): LiveLink {
+    return this.#link;
+  }
+  /** Acts that wait for a link. */
+  get waiting(): number {
+    return this.pending.length;
+  }
+
+  newId(): string {
+    return this.#around.makeId();
+  }
+
+  /** Why this person may not do it, in words; undefined when they may. */
+  whyNot(command: Command['name']): string | undefined {
+    const allowed = mayCommand(this.me.role, { name: command, data: { engaged: false } } as unknown as Command);
+    if (allowed) return undefined;
+    return this.me.role === 'observer' ? t('role.observerMay') : t('role.commanderOnly');
+  }
+
+  async send(command: Command): Promise<string> {
+    if (!mayCommand(this.me.role, command)) {
+      this.toasts.show('warning', t('role.commanderOnly'));
+      return '';
+    }
+    return this.#link.send(command);
+  }
+
+  /** Carries out `forward` and remembers how to take it back. */
+  act(forward: readonly Command[], backward: readonly Command[]): void {
+    this.history = record(this.history, { forward, backward });
+    for (const command of forward) void this.send(command);
+  }
+  undo(): void {
+    this.#replay(undo(this.history));
+  }
+  redo(): void {
+    this.#replay(redo(this.history));
+  }
+  #replay(step: { commands: readonly Command[]; history: History<Command> } | undefined): void {
+    if (!step) return;
+    this.history = step.history;
+    for (const command of step.commands) void this.send(command);
+  }
+
+  onInk(listener: InkListener): () => void {
+    this.#inkListeners.add(listener);
+    return () => this.#inkListeners.delete(listener);
+  }
+
+  looksAt(p: readonly [number, number] | null, radius: number): void {
+    this.#link.presence(this.mode, p ? mapPoint(p[0], p[1]) : null);
+    if (p) this.#link.look({ x: p[0], y: p[1], radius });
+  }
+
+  #position(): { epoch: number; seq: number; parts?: Record<string, number> } {
+    const position = this.tiles.position;
+    // Revisions count within one run of the server; those of another run say nothing.
+    return position.epoch === this.#epoch && this.#epoch !== 0 ? { ...position, parts: { ...this.#latest.revisions } } : position;
+  }
+
+  #handlers(unauthorised: () => void): ConstructorParameters<typeof LiveLink>[1] {
+    return {
+      unauthorised,
+      welcome: ({ epoch, resolution_m }) => this.#onWelcome(epoch, resolution_m),
+      delta: (delta) => this.#onDelta(delta),
+      tiles: async (frame) => {
+        await this.tiles.add(frame);
+        await nextFrame();
+      },
+      done: (entry) => this.#onDone(entry),
+      refused: (entry, message) => {
+        this.stop.answered(entry.id, false);
+        this.toasts.show('warning', t('link.refused', { what: nameOf(entry.command), why: message }));
+        this.#updatePending();
+      },
+      expired: (entry) => this.toasts.show('warning', t('link.expired', { what: nameOf(entry.command) })),
+      ink: (ink) => this.#inkListeners.forEach((listener) => listener(ink)),
+      changed: () => this.#updateLink(),
+    };
+  }
+
+  #onWelcome(epoch: number, resolutionM: number): void {
+    if (epoch !== this.#epoch) this.#latest = kEmptyWorld;
+    this.#epoch = epoch;
+    this.resolutionM = resolutionM;
+    this.tiles.enterEpoch(epoch);
+    this.#publish();
+  }
+
+  #onDelta(delta: Message<'delta'>): void {
+    const applied = apply(this.#latest, delta);
+    if (!applied.ok) return;
+    this.#latest = applied.world;
+    this.#publish();
+  }
+
+  #onDone(entry: Entry): void {
+    this.stop.answered(entry.id, true);
+    this.#acked.set(entry.id, { command: entry.command, createdMs: entry.createdMs, ackedMs: this.#around.nowMs() });
+    this.#updatePending();
+  }
+
+  #publish(): void {
+    if (this.#publishing) return;
+    this.#publishing = true;
+    void nextFrame().then(() => {
+      this.#publishing = false;
+      this.#published = this.#latest;
+      this.#updatePending();
+    });
+  }
+
+  #updatePending(): void {
+    const now = this.#around.nowMs();
+    for (const [id, { command, ackedMs }] of this.#acked) {
+      if (isReflected(this.#latest, command) || now - ackedMs > kForgetAckedMs) this.#acked.delete(id);
+    }
+    const acked = [...this.#acked].map(([id, { command, createdMs }]) => ({ id, command, createdMs }));
+    const next: PendingCommand[] = [...acked, ...this.#outbox.entries];
+    if (next.length > 0 || this.pending.length > 0) this.pending = next;
+  }
+
+  #updateLink(): void {
+    const heard = this.#link.lastHeardMs;
+    this.linkAgeMs = heard === null ? null : this.#around.nowMs() - heard;
+    this.linkWord = linkWord(this.#link.connected, this.linkAgeMs);
+    if (this.#outbox.entries.length !== this.pending.length) this.#updatePending();
+  }
+
+  #tick(): void {
+    this.nowMs = this.serverNowMs;
+    this.#updateLink();
+    this.#around.after(kTickMs, () => this.#tick());
+  }
+}
+
+const nameOf = (command: Command): string => t(`command.${command.name}`);
+
+/** The next painted frame; half a second in a hidden tab, which throttles the map to what nobody looks at. */
+function nextFrame(): Promise<void> {
+  return new Promise((resolve) => {
+    if (document.hidden) setTimeout(resolve, 500);
+    else requestAnimationFrame(() => resolve());
+  });
+}
