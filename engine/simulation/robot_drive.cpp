@@ -10,6 +10,8 @@
 namespace smokemap {
 namespace {
 
+constexpr double kFreeAgain = 0.02;  ///< metres between robot and wall that end a touch
+
 double approach(double value, double wanted, double most) { return value + std::clamp(wanted - value, -most, most); }
 
 /// Along an arc: the chord at half the turn.
@@ -66,14 +68,14 @@ void RobotDrive::step(const SegmentWorld& world, Stamp dt, Stamp now) {
   const double turn = turn_rate_ * seconds;
   double way = speed_ * seconds;
   Pose2 next = advanced(T_world_robot_, way, turn);
-  const double here = world.clearance_m(T_world_robot_.translation(), params_.radius_m);
-  const double there = world.clearance_m(next.translation(), params_.radius_m);
+  const double here = world.clearance_m(T_world_robot_.translation(), params_.radius_m + 2 * kFreeAgain);
+  const double there = world.clearance_m(next.translation(), params_.radius_m + 2 * kFreeAgain);
   if (way != 0 && there < params_.radius_m && there < here + 1e-9) {  // nearer to a wall than the disc allows
     bumps_ += !touching_;
     touching_ = true;
     speed_ = way = 0;
     next = advanced(T_world_robot_, 0, turn);
-  } else if (way != 0) {
+  } else if (there > params_.radius_m + kFreeAgain) {
     touching_ = false;
   }
   T_world_robot_ = next;

@@ -29,7 +29,7 @@ SimulatedRobot::SimulatedRobot(const SimulatedRobotParams& params, const Pose2& 
       T_world_sweep_start_(T_world_start),
       scan_start_(params.start),
       sweep_start_(params.start),
-      next_odometry_(params.start) {
+      next_odometry_(params.start + from_seconds(1 / params.odometry_hz)) {
   ENGINE_EXPECT(params.validate().ok());
 }
 
