@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/angle.hpp"
 
 namespace smokemap {
 namespace {
@@ -17,17 +16,22 @@ struct Candidate {
   double from = 0, to = 0;  ///< share of the piece
 };
 
+/// A wall as it lies now, prepared for many questions.
+struct Target {
+  Point2 a, u, n;
+  double length = 0, half_thickness = 0, gate = 0;
+};
+
 /// The part of the piece beside the wall; nothing if they have nothing to do with each other.
-bool candidate(const Segment2& piece_map, const Segment2& piece_robot, const Point2& robot, const Segment2& wall,
-               double half_thickness, double gate, double gate_angle, Candidate& out) {
-  const double length = wall.length();
-  if (length < 0.05) return false;
-  const Point2 u = wall.direction(), n = wall.normal();
+bool candidate(const Segment2& piece_map, const Segment2& piece_robot, const Point2& robot, const Target& wall,
+               double gate_angle, Candidate& out) {
+  const Point2 &u = wall.u, &n = wall.n;
+  const double length = wall.length, half_thickness = wall.half_thickness, gate = wall.gate;
   const double d_a = n.dot(piece_map.a - wall.a), d_b = n.dot(piece_map.b - wall.a);
   if (std::min(std::abs(d_a), std::abs(d_b)) > gate + half_thickness + 0.3) return false;
   double s_a = u.dot(piece_map.a - wall.a), s_b = u.dot(piece_map.b - wall.a);
   if (std::max(s_a, s_b) < -kBeyondEnd_m || std::min(s_a, s_b) > length + kBeyondEnd_m) return false;
-  if (std::abs(s_b - s_a) < 1e-6 || line_angle_between(piece_map.heading(), wall.heading()) > gate_angle) return false;
+  if (std::abs(s_b - s_a) < 1e-6 || std::abs(d_b - d_a) > std::tan(gate_angle) * std::abs(s_b - s_a)) return false;
   const auto share = [&](double s) { return (s - s_a) / (s_b - s_a); };
   const double t_0 = share(-kBeyondEnd_m), t_1 = share(length + kBeyondEnd_m);
   out.from = std::clamp(std::min(t_0, t_1), 0.0, 1.0);
@@ -47,8 +51,12 @@ bool candidate(const Segment2& piece_map, const Segment2& piece_robot, const Poi
 
 std::vector<PieceLink> link_pieces(const std::vector<NodeView>& views, const std::vector<bool>& use_node, const PlanModel& plan,
                                    const GraphState& state, const std::vector<double>& gate_m, const AcgParams& params) {
-  std::vector<Segment2> walls;
-  for (const PlanEdge& w : plan.walls) walls.push_back(state.segment(w));
+  std::vector<Target> walls;
+  for (std::size_t w = 0; w < plan.walls.size(); ++w) {
+    const Segment2 s = state.segment(plan.walls[w]);
+    const bool usable = plan.walls[w].usable && s.length() >= 0.05;
+    walls.push_back({s.a, s.direction(), s.normal(), s.length(), plan.walls[w].half_thickness_m, usable ? gate_m[w] : 0});
+  }
   std::vector<PieceLink> links;
   std::vector<Candidate> found;
   for (std::size_t node = 0; node < views.size(); ++node) {
@@ -59,10 +67,8 @@ std::vector<PieceLink> link_pieces(const std::vector<NodeView>& views, const std
       found.clear();
       for (std::size_t w = 0; w < walls.size(); ++w) {
         Candidate c;
-        if (gate_m[w] <= 0 || !plan.walls[w].usable) continue;
-        if (!candidate(in_map, piece.segment, pose.translation(), walls[w], plan.walls[w].half_thickness_m, gate_m[w],
-                       params.gate_angle_rad, c))
-          continue;
+        if (walls[w].gate <= 0) continue;
+        if (!candidate(in_map, piece.segment, pose.translation(), walls[w], params.gate_angle_rad, c)) continue;
         c.link.node = node;
         c.link.wall = static_cast<int>(w);
         found.push_back(c);

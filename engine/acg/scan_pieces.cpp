@@ -82,10 +82,13 @@ NodeView view_of(const PoseNode& node, const AcgParams& params) {
     split(std::span(hits).subspan(from, i - from), params.min_piece_m, view.pieces);
     from = i;
   }
-  for (const Point2& p : hits) view.rays.push_back({std::atan2(p.y(), p.x()), p.norm(), true});
+  const auto add_ray = [&](const Point2& p, bool hit) {
+    view.rays.push_back({std::atan2(p.y(), p.x()), p.normalized(), p.norm(), hit});
+  };
+  for (const Point2& p : hits) add_ray(p, true);
   if (node.free_ends_robot)
     for (const Point2& p : *node.free_ends_robot)
-      if (p.allFinite() && p.norm() > 0.05) view.rays.push_back({std::atan2(p.y(), p.x()), p.norm(), false});
+      if (p.allFinite() && p.norm() > 0.05) add_ray(p, false);
   std::stable_sort(view.rays.begin(), view.rays.end(),
                    [](const ScanRay& a, const ScanRay& b) { return a.bearing_rad < b.bearing_rad; });
   return view;

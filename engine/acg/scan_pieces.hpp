@@ -17,6 +17,7 @@ struct ScanPiece {
 /// A beam by direction: where it ended, or how far it was free.
 struct ScanRay {
   double bearing_rad = 0;
+  Point2 way = Point2::UnitX();  ///< unit vector of the bearing
   double range_m = 0;
   bool hit = false;  ///< false: free up to range_m
 };

@@ -33,7 +33,7 @@ struct Sight {
 };
 
 Reading read_ray(const Sight& sight, const ScanRay& ray) {
-  const Point2 way(std::cos(ray.bearing_rad), std::sin(ray.bearing_rad));
+  const Point2& way = ray.way;
   const double approach = -sight.n.dot(way);
   Reading out;
   if (approach < kGrazing) return out;
