@@ -1,0 +1,262 @@
+#include "server/app/command_bus.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "server/access/permission.hpp"
+#include "server/wire/commands_json.hpp"
+
+namespace smokemap::server {
+namespace {
+
+constexpr int kPage = 500;
+constexpr JsonLimits kStoredLimits{64 * 1024 * 1024, 64};
+const Identity kServer{"server", "server", Role::kCommander};
+constexpr const char* kGoalEnded = "goal_ended";  // in the log only; not a command
+
+CommandReply refusal(const std::string& id, const Error& error, std::optional<std::int64_t> seq = std::nullopt) {
+  return {id, seq, to_string(error.code), error.message};
+}
+
+Result<Command> command_of(const Event& event) {
+  const auto data = parse_json(event.data, kStoredLimits);
+  if (!data) return data.error();
+  return command_from_json(event.name, *data, {event.who.name, event.time_ms * 1'000'000});
+}
+
+/// Calls `visit` for every event up to `last`; stops at the first error.
+template <typename Visit>
+Result<Ok> for_each_event(Store& store, std::optional<std::int64_t> last, const Visit& visit) {
+  for (std::int64_t from = 1;;) {
+    const auto page = store.events(from, kPage);
+    if (!page) return page.error();
+    for (const Event& event : *page) {
+      if (last && event.seq > *last) return Ok{};
+      if (auto done = visit(event); !done) return done;
+    }
+    if (page->size() < static_cast<std::size_t>(kPage)) return Ok{};
+    from = page->back().seq + 1;
+  }
+}
+
+bool is_refused(const Event& event) { return event.outcome.starts_with("refused"); }
+
+/// "refused: not_found: no robot called r9" -> code and message.
+CommandReply reply_of(const Event& event) {
+  CommandReply reply{event.command_id, event.seq, "", ""};
+  if (!is_refused(event)) return reply;
+  std::string rest = event.outcome.substr(std::min<std::size_t>(event.outcome.size(), 9));
+  const std::size_t colon = rest.find(": ");
+  reply.code = rest.substr(0, colon);
+  reply.message = colon == std::string::npos ? rest : rest.substr(colon + 2);
+  return reply;
+}
+
+}  // namespace
+
+bool ViewKeeper::note(const Command& command, const Json& data) {
+  if (const auto* layout = std::get_if<SetLayout>(&command)) {
+    const std::string prefix = "/api/plans/" + layout->plan_id + "/rectified";
+    view_.plan_picture = prefix;
+    const Json& document = data["layout"];
+    if (document.contains("rectified") && document["rectified"].is_string()) {
+      const std::string asked = document["rectified"].get<std::string>();
+      if (asked.starts_with(prefix) && asked.size() < prefix.size() + 80) view_.plan_picture = asked;
+    }
+    return true;
+  }
+  if (const auto* anchor = std::get_if<AddAnchor>(&command)) {
+    view_.anchors[anchor->id] = {anchor->p_layout_px, anchor->p_map};
+    return true;
+  }
+  if (const auto* anchor = std::get_if<RemoveAnchor>(&command)) return view_.anchors.erase(anchor->id) > 0;
+  return false;
+}
+
+Result<ViewKeeper> replay_log(Store& store, EnginePort& engine, const ReplayOptions& options) {
+  ViewKeeper keeper;
+  std::set<std::string> ended;
+  const auto collect = [&ended](const Event& event) -> Result<Ok> {
+    const auto data = event.name == kGoalEnded ? parse_json(event.data) : Result<Json>(Json());
+    if (data && data->contains("goal_id") && (*data)["goal_id"].is_string()) ended.insert((*data)["goal_id"].get<std::string>());
+    return Ok{};
+  };
+  if (auto read = for_each_event(store, options.last, collect); !read) return read.error();
+  const auto redo = [&](const Event& event) -> Result<Ok> {
+    if (is_refused(event) || event.name == kGoalEnded) return Ok{};
+    const auto command = command_of(event);
+    if (!command) return Ok{};  // of another version; it stays in the log
+    if (const auto* goal = std::get_if<SetGoal>(&*command); goal && (!options.with_goals || ended.contains(goal->goal.id)))
+      return Ok{};
+    const auto applied = engine.apply(*command);
+    if (applied) keeper.note(*command, *parse_json(event.data, kStoredLimits));
+    return Ok{};
+  };
+  if (auto read = for_each_event(store, options.last, redo); !read) return read.error();
+  return keeper;
+}
+
+CommandBus::CommandBus(Store& store, EnginePort& engine, std::shared_ptr<const Clock> clock, ViewListener listener,
+                       Limits limits)
+    : store_(store), engine_(engine), clock_(std::move(clock)), listener_(std::move(listener)), limits_(limits) {}
+
+CommandBus::~CommandBus() { stop(); }
+
+Result<Ok> CommandBus::log_server_act(const std::string& id, const std::string& name, const Json& data) {
+  Event event;
+  event.time_ms = clock_->now() / 1'000'000;
+  event.who = kServer;
+  event.command_id = id;
+  event.name = name;
+  event.data = to_text(data);
+  const auto seq = store_.append(event);
+  if (!seq) return seq.error();
+  return store_.set_outcome(*seq, "done");
+}
+
+Result<Ok> CommandBus::replay(Stamp goal_age) {
+  // Old goals are ended in the log first; then the replay passes them over.
+  std::map<std::string, std::int64_t> open;
+  const auto look = [&open](const Event& event) -> Result<Ok> {
+    const auto data = parse_json(event.data, kStoredLimits);
+    if (is_refused(event) || !data || !data->contains("goal_id") || !(*data)["goal_id"].is_string()) return Ok{};
+    const std::string goal = (*data)["goal_id"].get<std::string>();
+    if (event.name == "set_goal") open[goal] = event.time_ms;
+    if (event.name == "cancel_goal" || event.name == kGoalEnded) open.erase(goal);
+    return Ok{};
+  };
+  if (auto read = for_each_event(store_, std::nullopt, look); !read) return read;
+  const std::int64_t now_ms = clock_->now() / 1'000'000;
+  for (const auto& [goal, time_ms] : open) {
+    if (now_ms - time_ms <= goal_age / 1'000'000) continue;
+    const Json data = {{"goal_id", goal}, {"state", "cancelled"}, {"reason", "the server was started again"}};
+    if (auto logged = log_server_act("end-" + goal + "-" + std::to_string(now_ms), kGoalEnded, data); !logged) return logged;
+  }
+  auto keeper = replay_log(store_, engine_, {});
+  if (!keeper) return keeper.error();
+  keeper_ = std::move(*keeper);
+  listener_(keeper_.view());
+  return Ok{};
+}
+
+void CommandBus::start() {
+  thread_ = std::thread([this] { run(); });
+}
+
+void CommandBus::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_all();
+  if (thread_.joinable()) thread_.join();
+  std::deque<Job> left;
+  {
+    const std::lock_guard lock(mutex_);
+    left.swap(waiting_);
+  }
+  for (const Job& job : left) job.reply(refusal(job.message.id, fail(Errc::kIo, "the server stops")));
+}
+
+void CommandBus::submit(const Identity& who, CommandMessage message, Reply reply) {
+  const bool urgent = message.name == "emergency_stop";
+  {
+    const std::lock_guard lock(mutex_);
+    if (!stopping_ && (urgent || waiting_.size() < limits_.most_waiting)) {
+      Job job{who, std::move(message), std::move(reply)};
+      if (urgent)
+        waiting_.push_front(std::move(job));
+      else
+        waiting_.push_back(std::move(job));
+      wake_.notify_one();
+      return;
+    }
+  }
+  reply({message.id, std::nullopt, "busy", "the server is busy; try again in a moment"});
+}
+
+void CommandBus::note_goals(const Snapshot& snapshot) {
+  const std::lock_guard lock(mutex_);
+  for (const GoalView& view : snapshot.goals) {
+    if (!is_final(view.goal.state) || logged_goals_.contains(view.goal.id)) continue;
+    logged_goals_[view.goal.id] = ended_goals_[view.goal.id] = to_string(view.goal.state);
+    wake_.notify_one();
+  }
+}
+
+void CommandBus::run() {
+  for (;;) {
+    std::optional<Job> job;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, [this] { return stopping_ || !waiting_.empty() || !ended_goals_.empty(); });
+      if (stopping_) return;
+      if (!waiting_.empty()) {
+        job = std::move(waiting_.front());
+        waiting_.pop_front();
+      }
+    }
+    if (job)
+      job->reply(carry_out(*job));
+    else
+      log_ended_goals();
+  }
+}
+
+void CommandBus::log_ended_goals() {
+  std::map<std::string, std::string> ended;
+  {
+    const std::lock_guard lock(mutex_);
+    ended.swap(ended_goals_);
+  }
+  for (const auto& [goal, state] : ended)  // failing to note it costs no more than a goal offered again
+    (void)log_server_act("end-" + goal, kGoalEnded, {{"goal_id", goal}, {"state", state}}).ok();
+}
+
+std::optional<CommandReply> CommandBus::earlier_answer(const Job& job) {
+  const auto earlier = store_.find(job.message.id);
+  if (!earlier) return refusal(job.message.id, earlier.error());
+  if (!*earlier) return std::nullopt;
+  if ((*earlier)->who.device != job.who.device || (*earlier)->name != job.message.name)
+    return refusal(job.message.id, fail(Errc::kConflict, "this id was used for another command"));
+  return reply_of(**earlier);
+}
+
+CommandReply CommandBus::carry_out(const Job& job) {
+  const CommandMessage& message = job.message;
+  const std::int64_t now_ms = clock_->now() / 1'000'000;
+  const auto command = command_from_json(message.name, message.data, {job.who.name, now_ms * 1'000'000});
+  if (!command) return refusal(message.id, command.error());
+  if (auto allowed = may(job.who.role, *command); !allowed) return refusal(message.id, allowed.error());
+  const auto* stop = std::get_if<EmergencyStop>(&*command);
+  if (stop && stop->engaged) return stop_robots(job, *command);
+  if (auto answer = earlier_answer(job)) return *answer;
+  if (message.expires_ms && *message.expires_ms < now_ms)
+    return refusal(message.id, fail(Errc::kCancelled, "it came too late to be carried out"));
+  const auto seq = store_.append({0, now_ms, job.who, message.id, message.name, to_text(message.data), ""});
+  if (!seq) return refusal(message.id, seq.error());
+  return apply_stored(*seq, job, *command);
+}
+
+CommandReply CommandBus::apply_stored(std::int64_t seq, const Job& job, const Command& command) {
+  const auto applied = engine_.apply(command);
+  const std::string outcome =
+      applied ? "done" : std::string("refused: ") + to_string(applied.error().code) + ": " + applied.error().message;
+  (void)store_.set_outcome(seq, outcome).ok();  // the log has the command; replay decides anew
+  if (!applied) return refusal(job.message.id, applied.error(), seq);
+  if (keeper_.note(command, job.message.data)) listener_(keeper_.view());
+  return {job.message.id, seq, "", ""};
+}
+
+CommandReply CommandBus::stop_robots(const Job& job, const Command& command) {
+  const auto applied = engine_.apply(command);
+  const auto earlier = store_.find(job.message.id);
+  if (earlier && *earlier) return reply_of(**earlier);
+  const std::int64_t now_ms = clock_->now() / 1'000'000;
+  const auto seq = store_.append({0, now_ms, job.who, job.message.id, job.message.name, to_text(job.message.data), ""});
+  if (seq) (void)store_.set_outcome(*seq, applied ? "done" : "refused: " + applied.error().message).ok();
+  if (!applied) return refusal(job.message.id, applied.error(), seq ? std::optional(*seq) : std::nullopt);
+  return {job.message.id, seq ? *seq : 0, "", ""};
+}
+
+}  // namespace smokemap::server
