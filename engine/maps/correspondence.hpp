@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,7 @@ struct Matching {
   double margin = 0;                  ///< how much better the best is than the runner-up, 0..1
   bool doubtful = false;              ///< the whole matching should be looked at by a person
   std::optional<int> next_pin_label_a;  ///< the region whose tap would tell most
+  Eigen::Matrix2d turn_b_a = Eigen::Matrix2d::Identity();  ///< how map a is turned (and mirrored) over b, pictures with y down
 };
 
 /// Where a point of one map lies on another. No place is an answer; a place without its error is not.

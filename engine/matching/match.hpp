@@ -8,15 +8,8 @@
 
 namespace smokemap {
 
-enum class MatchMethod {
-  kAligned,  ///< our own (default): several candidate alignments, then the best assignment of regions under each
-  kUrsim,    ///< as published: anchors, weighted graph Laplacian, heat kernels (Mielle et al., Robotics 8(2), 2019)
-};
-
 struct MatchParams {
-  MatchMethod method = MatchMethod::kAligned;
-  int candidates = 6;              ///< alignments kept for the exact comparison
-  double unmatched_cost = 0.0;     ///< what a region without partner costs (times its share of the area); 0 = built-in
+  int candidates = 6;              ///< alignments bent and compared in full
   bool allow_many_to_many = true;  ///< two regions of one map may be one region of the other
   bool allow_mirror = false;       ///< a drawing seen from below; only when a person says so
 

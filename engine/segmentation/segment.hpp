@@ -17,10 +17,12 @@ struct SegmentationParams {
   SegmentationMethod method = SegmentationMethod::kConstriction;
 
   // kConstriction
-  double door_ratio = 0.70;       ///< a passage narrower than this share of the smaller room's width is a door
-  double min_room_ratio = 0.0;    ///< rooms of less than this share of the median room are niches of their neighbour
+  double door_ratio = 0.70;       ///< where the thickness falls below this share of a room's, the room ends
+  double niche_depth = 0.30;      ///< what is shallower than this many widths of its opening belongs to its neighbour
+  double door_contact = 0.50;     ///< a piece between others that touches them with this share of its outline is a door
+  double min_room_ratio = 0.02;   ///< smallest room, in squares of the typical clearance
   double min_clearance_px = 1.5;  ///< free space narrower than this has no room of its own
-  double clutter_ratio = 0.0;     ///< obstacles smaller than this share of the map's typical room width are furniture
+  double clutter_ratio = 1.0;     ///< islands smaller than this many typical clearances are furniture
 
   // kMaoris (thresholds of the paper; door_merge is 40..50 for robot maps, 60 for sketches)
   double maoris_door_drop = 0.30;    ///< t: relative drop of the thickness at a door

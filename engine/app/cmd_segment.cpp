@@ -1,0 +1,91 @@
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "app/commands.hpp"
+#include "app/map_picture.hpp"
+#include "segmentation/outline.hpp"
+#include "segmentation/segment.hpp"
+#include "topology/voronoi_graph.hpp"
+
+namespace smokemap::app {
+namespace {
+
+struct SegmentArguments {
+  std::string picture, output, regions, preview, topology;
+  MapKind kind = MapKind::kRobot;
+  SegmentationMethod method = SegmentationMethod::kConstriction;
+};
+
+nlohmann::json pair_of(const Point2& p) { return {p.x(), p.y()}; }
+
+nlohmann::json regions_document(const Segmentation& segmentation) {
+  nlohmann::json regions = nlohmann::json::array(), borders = nlohmann::json::array();
+  for (const Region& region : segmentation.regions) {
+    nlohmann::json outline = nlohmann::json::array();
+    for (const Point2& p : region_outline(segmentation, region.label)) outline.push_back(pair_of(p));
+    regions.push_back({{"label", region.label},
+                       {"kind", region.kind == RegionKind::kCorridor ? "corridor" : "room"},
+                       {"area", region.area_px},
+                       {"centroid", pair_of(region.centroid_px)},
+                       {"anchor", pair_of(region.anchor_px)},
+                       {"clearance", region.clearance_px},
+                       {"outline", std::move(outline)}});
+  }
+  for (const RegionBorder& border : segmentation.borders)
+    borders.push_back({{"a", border.label_a},
+                       {"b", border.label_b},
+                       {"line", {border.line_px.a.x(), border.line_px.a.y(), border.line_px.b.x(), border.line_px.b.y()}},
+                       {"width", border.width_px}});
+  return {{"size", {segmentation.labels.cols, segmentation.labels.rows}}, {"regions", regions}, {"borders", borders}};
+}
+
+Result<Ok> segment_picture(const SegmentArguments& arguments) {
+  const Result<cv::Mat> picture = read_map_picture(arguments.picture);
+  if (!picture) return picture.error();
+  const Result<cv::Mat> free_space = free_space_of_picture(*picture);
+  if (!free_space) return free_space.error();
+  const Result<Segmentation> segmentation = segment(*free_space, segmentation_params(arguments.kind, arguments.method));
+  if (!segmentation) return segmentation.error();
+  if (!arguments.topology.empty()) {
+    const Result<VoronoiGraph> graph = voronoi_graph(*free_space);
+    if (!graph) return graph.error();
+    const Result<Ok> drawn = write_picture(arguments.topology, draw_voronoi_graph(*graph, *free_space));
+    if (!drawn) return drawn;
+  }
+  if (!arguments.regions.empty()) {
+    const Result<Ok> written = write_text(arguments.regions, regions_document(*segmentation).dump());
+    if (!written) return written;
+  }
+  if (!arguments.preview.empty()) {
+    const Result<Ok> drawn = write_picture(arguments.preview, draw_segmentation(*segmentation, *picture));
+    if (!drawn) return drawn;
+  }
+  return write_picture(arguments.output, segmentation->labels);
+}
+
+}  // namespace
+
+void add_segment(CLI::App& app, Outcome& outcome) {
+  auto arguments = std::make_shared<SegmentArguments>();
+  auto* command = app.add_subcommand("segment", "Split the free space of a map into rooms and corridors");
+  command->add_option("map", arguments->picture, "picture of a map; free space is brighter than gray 250")->required();
+  command->add_option("-o,--output", arguments->output, "label image, 16 bit, 0 = no region")->required();
+  command->add_option("--json", arguments->regions, "regions and the borders between them, as JSON");
+  command->add_option("--preview", arguments->preview, "PNG with one colour a region");
+  command->add_option("--topology", arguments->topology, "PNG with the trimmed Voronoi graph");
+  command->add_option("--kind", arguments->kind, "what kind of map it is")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, MapKind>{
+          {"sketch", MapKind::kSketch}, {"robot", MapKind::kRobot}, {"layout", MapKind::kLayout}}));
+  command->add_option("--method", arguments->method, "constriction (ours) or maoris (as published, ICRA 2018)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, SegmentationMethod>{
+          {"constriction", SegmentationMethod::kConstriction}, {"maoris", SegmentationMethod::kMaoris}}));
+  command->callback([arguments, &outcome] {
+    const Result<Ok> done = segment_picture(*arguments);
+    if (!done) outcome.no_answer(done.error());
+  });
+}
+
+}  // namespace smokemap::app

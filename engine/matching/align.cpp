@@ -1,0 +1,132 @@
+#include "matching/align.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+namespace smokemap {
+namespace {
+
+constexpr std::array kScales = {0.65, 0.75, 0.87, 1.0, 1.15};  ///< times the root of the ratio of areas
+constexpr std::array kStretches = {0.72, 1.0, 1.39};           ///< along over across the walls
+constexpr double kPinSigma_cells = 4;    ///< how far a good alignment of bent maps may leave a pin
+constexpr double kPinWeight = 0.06;      ///< score lost at one sigma
+constexpr double kPinCap = 9;            ///< in squared sigmas: one wrong pin must not rule out everything
+
+/// Shift that brings each pin of a, already turned and scaled, onto its partner.
+std::vector<Point2> pin_shifts(const Eigen::Affine2d& turned, const MapRaster& a, const MapRaster& b,
+                               const std::vector<Pin>& pins) {
+  std::vector<Point2> shifts;
+  for (const Pin& pin : pins) shifts.push_back(b.to_cells(pin.p_b_px) - turned * a.to_cells(pin.p_a_px));
+  return shifts;
+}
+
+double pin_cost(const std::vector<Point2>& shifts, const Point2& shift) {
+  double cost = 0;
+  for (const Point2& wanted : shifts)
+    cost += std::min(kPinCap, (wanted - shift).squaredNorm() / (kPinSigma_cells * kPinSigma_cells));
+  return shifts.empty() ? 0 : kPinWeight * cost;
+}
+
+/// Compares one turned and scaled a with all shifts over b at once.
+class ShiftSearch {
+ public:
+  explicit ShiftSearch(const MapRaster& b) : b_(b) {
+    const int side = 2 * std::max(b.depth.cols, b.depth.rows);
+    size_ = cv::getOptimalDFTSize(side);
+    cv::Mat padded(size_, size_, CV_32FC1, cv::Scalar(0));
+    b.depth.copyTo(padded(cv::Rect(0, 0, b.depth.cols, b.depth.rows)));
+    energy_b_ = padded.dot(padded);
+    cv::dft(padded, spectrum_b_);
+  }
+
+  /// @param linear  turn and scale of a in cells of b, about a's middle, which it lays on the middle of the window
+  Alignment best_shift(const MapRaster& a, const Eigen::Matrix2d& linear, const std::vector<Pin>& pins) const {
+    Eigen::Affine2d window_a = Eigen::Affine2d::Identity();
+    const Point2 middle_a(0.5 * (a.depth.cols - 1), 0.5 * (a.depth.rows - 1));
+    window_a.linear() = linear;
+    window_a.translation() = Point2::Constant(0.5 * size_) - linear * middle_a;
+    const cv::Mat warped = warp(a.depth, window_a);
+    const double energy_a = warped.dot(warped);
+    cv::Mat spectrum_a, correlation;
+    cv::dft(warped, spectrum_a);
+    cv::mulSpectrums(spectrum_b_, spectrum_a, spectrum_a, 0, true);
+    cv::dft(spectrum_a, correlation, cv::DFT_INVERSE | cv::DFT_SCALE | cv::DFT_REAL_OUTPUT);
+    const std::vector<Point2> shifts = pin_shifts(window_a, a, b_, pins);
+    const double norm = std::sqrt(std::max(1e-9, energy_a * energy_b_));
+    Alignment best{window_a, -1e9};
+    Point2 best_shift = Point2::Zero();
+    for (int y = 0; y < size_; ++y)
+      for (int x = 0; x < size_; ++x) {
+        const Point2 shift(x < size_ / 4 ? x : x - size_, y < size_ / 4 ? y : y - size_);
+        const double score = correlation.at<float>(y, x) / norm - pin_cost(shifts, shift);
+        if (score > best.score) best.score = score, best_shift = shift;
+      }
+    best.cells_b_a.pretranslate(best_shift);
+    return best;
+  }
+
+ private:
+  cv::Mat warp(const cv::Mat& depth, const Eigen::Affine2d& window_a) const {
+    const cv::Matx23d matrix(window_a(0, 0), window_a(0, 1), window_a(0, 2), window_a(1, 0), window_a(1, 1),
+                             window_a(1, 2));
+    cv::Mat warped;
+    cv::warpAffine(depth, warped, matrix, cv::Size(size_, size_), cv::INTER_LINEAR, cv::BORDER_CONSTANT, 0);
+    return warped;
+  }
+
+  const MapRaster& b_;
+  int size_ = 0;
+  double energy_b_ = 0;
+  cv::Mat spectrum_b_;
+};
+
+Eigen::Matrix2d rotation(double angle_rad) { return Eigen::Rotation2Dd(angle_rad).toRotationMatrix(); }
+
+/// Mean distance between where two alignments put the corners of a.
+double difference(const Alignment& one, const Alignment& two, const MapRaster& a) {
+  double sum = 0;
+  for (const Point2& corner : {Point2(0, 0), Point2(a.depth.cols, 0), Point2(0, a.depth.rows), Point2(a.depth.cols, a.depth.rows)})
+    sum += (one.cells_b_a * corner - two.cells_b_a * corner).norm();
+  return sum / 4;
+}
+
+}  // namespace
+
+std::vector<Alignment> find_alignments(const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins,
+                                       bool allow_mirror, int count) {
+  const ShiftSearch search(b);
+  const double scale = std::sqrt(b.free_cells / std::max(1.0, a.free_cells));
+  std::vector<Alignment> all;
+  for (int mirror = 0; mirror <= (allow_mirror ? 1 : 0); ++mirror)
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      // Straighten a's walls, mirror, turn by quarters, then into b's wall direction; stretch along b's walls.
+      const Eigen::Matrix2d flip = Eigen::Vector2d(mirror ? -1 : 1, 1).asDiagonal();
+      const Eigen::Matrix2d straight =
+          rotation(quarter * std::numbers::pi / 2) * flip * rotation(-a.wall_direction_rad);
+      std::vector<Alignment> turned;
+      for (const double size : kScales)
+        for (const double stretch : kStretches) {
+          const Eigen::Matrix2d scaling =
+              (scale * size * Eigen::Vector2d(std::sqrt(stretch), 1 / std::sqrt(stretch))).asDiagonal();
+          // Wall directions are modulo 90 degrees: take the smaller of the two equal turns.
+          turned.push_back(search.best_shift(a, rotation(b.wall_direction_rad) * scaling * straight, pins));
+        }
+      all.insert(all.end(), turned.begin(), turned.end());
+    }
+  std::stable_sort(all.begin(), all.end(), [](const Alignment& one, const Alignment& two) { return one.score > two.score; });
+  std::vector<Alignment> chosen;
+  const double apart = 0.08 * std::max(b.depth.cols, b.depth.rows);
+  for (const Alignment& candidate : all) {
+    const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&](const Alignment& other) {
+      return difference(candidate, other, a) < apart;
+    });
+    if (is_new) chosen.push_back(candidate);
+    if (static_cast<int>(chosen.size()) >= count) break;
+  }
+  return chosen;
+}
+
+}  // namespace smokemap

@@ -1,0 +1,112 @@
+#include "segmentation/thickness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+namespace smokemap {
+
+cv::Mat clearance_image(const cv::Mat& free_space) {
+  cv::Mat padded, distance;
+  cv::copyMakeBorder(free_space == 255, padded, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+  cv::distanceTransform(padded, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE, CV_32F);
+  return distance(cv::Rect(1, 1, free_space.cols, free_space.rows)).clone();
+}
+
+namespace {
+
+struct RidgePixel {
+  float clearance;
+  int x, y;
+};
+
+constexpr float kCoverTolerance_px = 0.15f;  ///< a disc may be lost if another one covers all but this much of it
+
+float value_or_zero(const cv::Mat& image, int x, int y) {
+  const bool inside = x >= 0 && y >= 0 && x < image.cols && y < image.rows;
+  return inside ? image.at<float>(y, x) : 0.0f;
+}
+
+/// A disc that lies inside that of a pixel farther up the slope of the clearance paints nothing new.
+bool covered_from_uphill(const cv::Mat& clearance, int x, int y) {
+  const float own = clearance.at<float>(y, x);
+  const float gx = value_or_zero(clearance, x + 1, y) - value_or_zero(clearance, x - 1, y);
+  const float gy = value_or_zero(clearance, x, y + 1) - value_or_zero(clearance, x, y - 1);
+  const float slope = std::hypot(gx, gy);
+  if (slope < 1e-3f) return false;
+  for (int reach = 1; reach <= 4; ++reach) {
+    const int dx = static_cast<int>(std::lround(static_cast<float>(reach) * gx / slope));
+    const int dy = static_cast<int>(std::lround(static_cast<float>(reach) * gy / slope));
+    const float step = std::hypot(static_cast<float>(dx), static_cast<float>(dy));
+    if (value_or_zero(clearance, x + dx, y + dy) >= own + step - kCoverTolerance_px) return true;
+  }
+  return false;
+}
+
+std::vector<RidgePixel> ridge_by_rising_clearance(const cv::Mat& clearance) {
+  std::vector<RidgePixel> ridge;
+  for (int y = 0; y < clearance.rows; ++y)
+    for (int x = 0; x < clearance.cols; ++x) {
+      const float own = clearance.at<float>(y, x);
+      if (own > 0 && !covered_from_uphill(clearance, x, y)) ridge.push_back({own, x, y});
+    }
+  std::stable_sort(ridge.begin(), ridge.end(), [](const RidgePixel& one, const RidgePixel& two) {
+    return one.clearance < two.clearance;
+  });
+  return ridge;
+}
+
+}  // namespace
+
+cv::Mat local_thickness(const cv::Mat& clearance) {
+  cv::Mat thickness = clearance.clone();
+  for (const RidgePixel& pixel : ridge_by_rising_clearance(clearance)) {
+    // In rising order, so that larger discs paint over smaller ones. Half a pixel more makes up for the covered discs that
+    // were left out and cannot reach beyond a wall.
+    const double squared = (pixel.clearance + 0.5) * (pixel.clearance + 0.5);
+    const int reach = static_cast<int>(std::sqrt(std::max(0.0, squared)));
+    for (int dy = -reach; dy <= reach; ++dy) {
+      const int y = pixel.y + dy;
+      if (y < 0 || y >= clearance.rows) continue;
+      const int half = static_cast<int>(std::sqrt(std::max(0.0, squared - dy * dy)));
+      const int from = std::max(0, pixel.x - half);
+      const int to = std::min(clearance.cols - 1, pixel.x + half);
+      float* row = thickness.ptr<float>(y);
+      std::fill(row + from, row + to + 1, pixel.clearance);
+    }
+  }
+  thickness.setTo(0, clearance <= 0);
+  return thickness;
+}
+
+cv::Mat without_islands(const cv::Mat& free_space, double max_side_px) {
+  cv::Mat result = free_space == 255;
+  if (max_side_px < 1) return result;
+  cv::Mat solid, labels, stats, centroids;
+  cv::copyMakeBorder(free_space != 255, solid, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(255));
+  const int count = cv::connectedComponentsWithStats(solid, labels, stats, centroids, 8, CV_32S);
+  std::vector<unsigned char> is_island(static_cast<size_t>(count), 0);
+  for (int label = 1; label < count; ++label) {
+    const int side = std::max(stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT));
+    is_island[static_cast<size_t>(label)] = side < max_side_px;
+  }
+  for (int y = 0; y < result.rows; ++y)
+    for (int x = 0; x < result.cols; ++x)
+      if (is_island[static_cast<size_t>(labels.at<int>(y + 1, x + 1))]) result.at<unsigned char>(y, x) = 255;
+  return result;
+}
+
+double median_thickness(const cv::Mat& thickness) {
+  std::vector<float> values;
+  values.reserve(thickness.total());
+  for (int y = 0; y < thickness.rows; ++y)
+    for (int x = 0; x < thickness.cols; ++x)
+      if (thickness.at<float>(y, x) > 0) values.push_back(thickness.at<float>(y, x));
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace smokemap
