@@ -20,6 +20,7 @@ struct Outcome {
 // Options live as long as the parser: keep them in a shared_ptr captured by the callback.
 void add_segment(CLI::App& app, Outcome& outcome);
 void add_match(CLI::App& app, Outcome& outcome);
+void add_convert(CLI::App& app, Outcome& outcome);
 void add_layout(CLI::App& app, Outcome& outcome);
 void add_sketch(CLI::App& app, Outcome& outcome);
 void add_merge(CLI::App& app, Outcome& outcome);

@@ -26,6 +26,7 @@ int run(int argc, char** argv) {
   app.add_flag("--json", outcome.json, "also print errors as JSON on standard output");
   add_segment(app, outcome);
   add_match(app, outcome);
+  add_convert(app, outcome);
   add_layout(app, outcome);
   add_sketch(app, outcome);
   add_merge(app, outcome);

@@ -63,18 +63,19 @@ void RosLogBuilder::keep(int topic, std::variant<RosScan, RosOdometry, RosRadar>
 
 void RosLogBuilder::add_transforms(const std::string& topic, const std::vector<RosTransform>& transforms) {
   const bool is_fixed = base_name(topic) == "tf_static";
+  auto& [fixed, fixed_or_seen] = frames_[namespace_of(topic)];
   for (const RosTransform& t : transforms) {
     if (is_fixed) {
-      fixed_.set(t.parent, t.child, t.translation, t.rotation);
-      fixed_or_seen_.set(t.parent, t.child, t.translation, t.rotation);
+      fixed.set(t.parent, t.child, t.translation, t.rotation);
+      fixed_or_seen.set(t.parent, t.child, t.translation, t.rotation);
     } else if (is_odometry_frame(t.parent)) {
       RosOdometry message{t.parent, t.child, {}};
       message.odometry.stamp = t.stamp;
       message.odometry.T_odom_robot =
           Pose2(t.translation.x(), t.translation.y(), heading_of(t.rotation).value_or(std::nan("")));
       keep(topic_index(topic, Kind::kTransformOdometry), std::move(message));
-    } else if (!is_odometry_frame(t.child) && !fixed_or_seen_.lookup(t.parent, t.child)) {
-      fixed_or_seen_.set(t.parent, t.child, t.translation, t.rotation);
+    } else if (!is_odometry_frame(t.child) && !fixed_or_seen.lookup(t.parent, t.child)) {
+      fixed_or_seen.set(t.parent, t.child, t.translation, t.rotation);
     }
   }
 }
@@ -132,16 +133,26 @@ void RosLogBuilder::choose_sensors(Kind kind) {
   for (const auto& [robot, topic] : chosen) topic->used = true;
 }
 
+/// In the robot's own transforms, else in the shared ones; what is fixed before what was only seen.
+std::optional<SensorMount> RosLogBuilder::find_mount(const std::string& robot, const std::string& base,
+                                                     const std::string& sensor) {
+  for (const std::string& name_space : {robot, std::string()}) {
+    const Frames& frames = frames_[name_space];
+    if (auto mount = frames.fixed.mount(base, sensor)) return mount;
+    if (auto mount = frames.fixed_or_seen.mount(base, sensor)) return mount;
+  }
+  return std::nullopt;
+}
+
 SensorMount RosLogBuilder::mount_of(const std::string& robot, const std::string& sensor_frame) {
   constexpr double kMostTiltRad = 0.1;
   const auto [known, is_new] = mounts_.try_emplace(robot + "|" + sensor_frame);
   if (!is_new) return known->second;
-  std::string base = base_frames_[robot];
-  if (base.empty()) base = fixed_or_seen_.knows("base_link") ? "base_link" : "base_footprint";
-  auto mount = fixed_.mount(base, sensor_frame);
-  if (!mount) mount = fixed_or_seen_.mount(base, sensor_frame);
+  std::optional<SensorMount> mount;
+  for (const std::string& base : {base_frames_[robot], std::string("base_link"), std::string("base_footprint")})
+    if (!mount && !base.empty()) mount = find_mount(robot, base, sensor_frame);
   if (!mount) {
-    warn("no fixed transform from " + base + " to " + sensor_frame + ": taking the sensor of " + robot +
+    warn("no fixed transform to " + sensor_frame + ": taking the sensor of " + robot +
          " to sit at the middle of the robot, looking ahead");
   } else {
     known->second = *mount;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <map>
-#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -47,14 +47,18 @@ class RosLogBuilder {
   void choose_odometry();
   void choose_sensors(Kind kind);
   int best_odometry(const Topic& sensor) const;
+  std::optional<SensorMount> find_mount(const std::string& robot, const std::string& base, const std::string& sensor);
   SensorMount mount_of(const std::string& robot, const std::string& sensor_frame);
   void emit(Record record);
 
   SensorLog log_;
   std::vector<Topic> topics_;
   std::vector<Record> records_;
-  FrameTree fixed_;        ///< tf_static
-  FrameTree fixed_or_seen_;  ///< also transforms on tf, as first seen, without odometry
+  struct Frames {
+    FrameTree fixed;          ///< tf_static
+    FrameTree fixed_or_seen;  ///< also transforms on tf, as first seen, without odometry
+  };
+  std::map<std::string, Frames> frames_;  ///< by namespace of their topics; "" is shared by all robots
   std::map<std::string, SensorMount> mounts_;
   std::map<std::string, std::string> base_frames_;
 };

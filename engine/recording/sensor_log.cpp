@@ -7,11 +7,13 @@
 #include <fstream>
 #include <memory>
 #include <span>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
 #include "recording/carmen_log.hpp"
 #include "recording/file_bytes.hpp"
+#include "recording/log_writer.hpp"
 #include "recording/mcap_reader.hpp"
 #include "recording/ros_log_builder.hpp"
 #include "recording/rosbag2_db3.hpp"
@@ -116,6 +118,14 @@ Result<SensorLog> read_log(const std::filesystem::path& path) {
   auto log = read_carmen(as_text(*bytes));
   if (log && damaged) log->warnings.emplace_back("the file ends early; everything before its end was read");
   return log;
+}
+
+Result<Ok> write_log(const SensorLog& log, const std::filesystem::path& path) {
+  std::ostringstream out;
+  LogWriter writer(out);
+  for (const LogItem& item : log.items) writer.add(item);
+  if (auto done = writer.finish(); !done) return done;
+  return write_file(path, out.str());
 }
 
 }  // namespace smokemap

@@ -50,8 +50,8 @@ struct SensorLog {
 /// kIo, kUnsupported (no format we know), kCorrupt, or kDegenerate when there is neither a scan nor a sweep nor odometry.
 Result<SensorLog> read_log(const std::filesystem::path& path);
 
-/// Writes MCAP (see mcap_writer.hpp) that other tools of ROS 2 open: /<robot>/scan, odom, tf, tf_static, radar. A robot
-/// called "robot" has no namespace. Reading it back gives the same items, angles and ranges to float precision.
+/// Writes MCAP that other tools of ROS 2 open (log_writer.hpp). Reading it back gives the same items, angles and ranges to
+/// float precision.
 Result<Ok> write_log(const SensorLog& log, const std::filesystem::path& path);
 
 }  // namespace smokemap

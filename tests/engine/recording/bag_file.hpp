@@ -40,6 +40,7 @@ class BagFile {
  public:
   explicit BagFile(const std::filesystem::path& path, bool humble = true) {
     EXPECT_EQ(sqlite3_open(path.c_str(), &database_), SQLITE_OK);
+    run("PRAGMA synchronous=OFF");  // nobody pulls the plug of a test
     run("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
         "serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL)");
     run("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL, "
