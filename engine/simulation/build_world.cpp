@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -51,6 +53,42 @@ void add_visible(const Segment2& edge, Material material, const std::vector<Wall
   }
 }
 
+/// Pieces of one face (overlapping or touching on one line) become one segment: fewer for every ray to look at.
+std::vector<WorldSegment> merge_faces(std::vector<WorldSegment> pieces) {
+  struct OnLine {
+    long heading = 0, offset = 0;  ///< of the line, in millionths; lines that differ by rounding only may stay apart
+    Material material = Material::kBrick;
+    double from = 0, to = 0;
+    Segment2 line;
+    auto key() const { return std::tuple(heading, offset, material); }
+  };
+  std::vector<OnLine> faces;
+  for (WorldSegment& piece : pieces) {
+    Point2 u = piece.line.direction();
+    if (u.x() < -1e-9 || (std::abs(u.x()) <= 1e-9 && u.y() < 0)) {
+      std::swap(piece.line.a, piece.line.b);
+      u = -u;
+    }
+    const Point2 n(-u.y(), u.x());
+    faces.push_back({std::lround(1e6 * std::atan2(u.y(), u.x())), std::lround(1e6 * n.dot(piece.line.a)), piece.material,
+                     u.dot(piece.line.a), u.dot(piece.line.b), piece.line});
+  }
+  std::sort(faces.begin(), faces.end(), [](const OnLine& a, const OnLine& b) {
+    return std::tuple(a.key(), a.from, a.to) < std::tuple(b.key(), b.from, b.to);
+  });
+  std::vector<WorldSegment> merged;
+  for (std::size_t i = 0; i < faces.size();) {
+    OnLine face = faces[i];
+    for (++i; i < faces.size() && faces[i].key() == face.key() && faces[i].from <= face.to; ++i) {
+      if (faces[i].to <= face.to) continue;
+      face.to = faces[i].to;
+      face.line.b = faces[i].line.b;
+    }
+    merged.push_back({face.line, face.material});
+  }
+  return merged;
+}
+
 }  // namespace
 
 SegmentWorld build_world(const FloorPlan& plan) {
@@ -61,6 +99,7 @@ SegmentWorld build_world(const FloorPlan& plan) {
     const Material material = plan.walls[static_cast<std::size_t>(solids[i].wall)].material;
     for (std::size_t k = 0; k < 4; ++k) add_visible({quad[k], quad[(k + 1) % 4]}, material, solids, i, segments);
   }
+  segments = merge_faces(std::move(segments));
   for (const Polygon& piece : plan.furniture)
     for (std::size_t k = 0; k < piece.size(); ++k)
       segments.push_back({{piece[k], piece[(k + 1) % piece.size()]}, Material::kWood});

@@ -28,8 +28,8 @@ inline double meet(double ax, double ay, double bx, double by, double dx, double
   return range < 0 ? kInfinite : range;
 }
 
-RayHit hit_on(const WorldSegment& segment, int index, const Point2& direction, double range_m) {
-  return {range_m, std::min(std::abs(segment.line.normal().dot(direction)), 1.0), index};
+RayHit hit_on(const Point2& normal, int index, const Point2& direction, double range_m) {
+  return {range_m, std::min(std::abs(normal.dot(direction)), 1.0), index};
 }
 
 Segment2 leaf_line(const DoorLeaf& door) {
@@ -68,6 +68,8 @@ void SegmentWorld::build() {
   ends_.clear();
   owner_.clear();
   if (segments_.empty()) return;
+  normals_.clear();
+  for (const WorldSegment& segment : segments_) normals_.push_back(segment.line.normal());
   low_ = high_ = segments_.front().line.a;
   for (const WorldSegment& segment : segments_)
     for (const Point2& p : {segment.line.a, segment.line.b}) {
@@ -163,7 +165,7 @@ std::optional<RayHit> SegmentWorld::cast(const Point2& origin, const Point2& dir
     }
   }
   if (found < 0) return std::nullopt;
-  return hit_on(segments_[static_cast<std::size_t>(found)], found, direction, best);
+  return hit_on(normals_[static_cast<std::size_t>(found)], found, direction, best);
 }
 
 bool SegmentWorld::sees(const Point2& from, const Point2& to) const {
@@ -198,7 +200,7 @@ std::optional<RayHit> cast_by_force(const SegmentWorld& world, const Point2& ori
     const Point2 a = world.segments()[i].line.a - origin, b = world.segments()[i].line.b - origin;
     const double range = meet(a.x(), a.y(), b.x(), b.y(), direction.x(), direction.y());
     if (range <= max_range_m && (!best || range < best->range_m))
-      best = hit_on(world.segments()[i], static_cast<int>(i), direction, range);
+      best = hit_on(world.segments()[i].line.normal(), static_cast<int>(i), direction, range);
   }
   return best;
 }

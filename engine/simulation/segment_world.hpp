@@ -75,6 +75,7 @@ class SegmentWorld {
   std::vector<int> first_;           ///< bucket -> first entry; one more than buckets
   std::vector<Ends> ends_;           ///< the segments of a bucket side by side
   std::vector<int> owner_;           ///< entry -> segment
+  std::vector<Point2> normals_;      ///< per segment
 };
 
 /// The oracle: tries every segment. For tests and for worlds of a few segments.

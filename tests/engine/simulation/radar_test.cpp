@@ -15,7 +15,7 @@ namespace smokemap {
 namespace {
 
 /// Mean power of an azimuth's bin over many sweeps.
-double mean_power(const SegmentWorld& world, const RadarParams& params, int azimuth, int bin, int sweeps) {
+double mean_power(const SegmentWorld& world, const RadarSimParams& params, int azimuth, int bin, int sweeps) {
   double sum = 0;
   for (int i = 0; i < sweeps; ++i) {
     auto random = random_stream(77, static_cast<std::uint64_t>(i));
@@ -25,8 +25,8 @@ double mean_power(const SegmentWorld& world, const RadarParams& params, int azim
   return sum / sweeps;
 }
 
-RadarParams small_radar() {
-  RadarParams params;
+RadarSimParams small_radar() {
+  RadarSimParams params;
   params.azimuths = 8;
   params.ghost_share = 0;
   return params;
@@ -45,7 +45,7 @@ TEST(Radar, HasUnitNoiseWhereNothingIs) {
 
 TEST(Radar, ShowsABrickWallAtFiveMetresAtItsSignalToNoiseRatio) {
   const SegmentWorld world({{{{5, -20}, {5, 20}}, Material::kBrick}});
-  RadarParams params = small_radar();
+  RadarSimParams params = small_radar();
   params.bin_m = 0.05;  // the wall at a bin's centre
   const double power = mean_power(world, params, 4, 100, 400);  // azimuth 4 looks along +x
   EXPECT_NEAR(10 * std::log10(power), 25, 1.0);
@@ -53,7 +53,7 @@ TEST(Radar, ShowsABrickWallAtFiveMetresAtItsSignalToNoiseRatio) {
 
 TEST(Radar, FallsWithTheCubeOfTheRange) {
   const SegmentWorld near({{{{2.5, -20}, {2.5, 20}}}}), far({{{{10, -20}, {10, 20}}}});
-  RadarParams params = small_radar();
+  RadarSimParams params = small_radar();
   params.bin_m = 0.05;
   params.saturation_db = 90;
   const double ratio = mean_power(near, params, 4, 50, 300) / mean_power(far, params, 4, 200, 300);
@@ -61,7 +61,7 @@ TEST(Radar, FallsWithTheCubeOfTheRange) {
 }
 
 TEST(Radar, LooksThroughPlasterboardButNotThroughBrick) {
-  RadarParams params = small_radar();
+  RadarSimParams params = small_radar();
   params.bin_m = 0.05;
   for (const Material material : {Material::kWood, Material::kBrick}) {
     const SegmentWorld world({{{{2, -20}, {2, 20}}, material}, {{{4, -20}, {4, 20}}, Material::kMetal}});
@@ -76,7 +76,7 @@ TEST(Radar, LooksThroughPlasterboardButNotThroughBrick) {
 TEST(Radar, MakesGhostsBehindMirrorsOnly) {
   // A metal wall at 45 degrees ahead sends the beam up to a second one: its image lies behind the first.
   const SegmentWorld world({{{{1, -1}, {5, 3}}, Material::kMetal}, {{{-10, 4}, {10, 4}}, Material::kMetal}});
-  RadarParams params = small_radar();
+  RadarSimParams params = small_radar();
   params.bin_m = 0.05;
   const int image = static_cast<int>(std::lround((2 + 4) / 0.05));
   EXPECT_LT(mean_power(world, params, 4, image, 200), 2);
@@ -86,7 +86,7 @@ TEST(Radar, MakesGhostsBehindMirrorsOnly) {
 
 TEST(Radar, SmearsAPoleAcrossItsBeam) {
   const SegmentWorld world({{{{7.9, -0.05}, {7.9, 0.05}}, Material::kMetal}});
-  RadarParams params;
+  RadarSimParams params;
   params.ghost_share = 0;
   std::mt19937_64 random(2);
   int seen = 0;
@@ -130,7 +130,7 @@ TEST(Radar, IsTheSameForASeed) {
 }
 
 TEST(Radar, RefusesNonsense) {
-  RadarParams params;
+  RadarSimParams params;
   params.bins = 0;
   EXPECT_THAT(params.validate(), test::Fails(Errc::kInvalidArgument));
 }
