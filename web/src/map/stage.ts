@@ -20,6 +20,16 @@ const kFlat = new Projection({ code: 'smokemap:flat', units: 'm', global: false,
 export const kMapLimits: Limits = { minResolution: 0.002, maxResolution: 0.5 };
 export const kPictureLimits: Limits = { minResolution: 0.05, maxResolution: 12 };
 
+/** CSS pixels at each edge that buttons cover, or that should stay free. */
+export interface Insets {
+  readonly top: number;
+  readonly right: number;
+  readonly bottom: number;
+  readonly left: number;
+}
+
+export const kInsets: Insets = { top: 32, right: 32, bottom: 32, left: 32 };
+
 export class Stage {
   readonly limits: Limits;
   readonly #map: OlMap;
@@ -87,15 +97,16 @@ export class Stage {
     this.#view.setCenter([p[0], p[1]]);
   }
 
-  /** Shows all of `bounds` with `padding` CSS pixels around it. Without bounds nothing moves. */
-  fit(bounds: Bounds, padding = 32): boolean {
+  /** Shows all of `bounds` beside what covers the canvas. Without bounds nothing moves. */
+  fit(bounds: Bounds, covered: Insets): boolean {
     const { width, height } = this.size;
     if (isEmpty(bounds) || width === 0 || height === 0) return false;
-    const across = (bounds.maxX - bounds.minX) / Math.max(1, width - 2 * padding);
-    const up = (bounds.maxY - bounds.minY) / Math.max(1, height - 2 * padding);
+    const across = (bounds.maxX - bounds.minX) / Math.max(1, width - covered.left - covered.right);
+    const up = (bounds.maxY - bounds.minY) / Math.max(1, height - covered.top - covered.bottom);
     const resolution = Math.min(this.limits.maxResolution, Math.max(this.limits.minResolution, across, up));
-    const center = viewPoint((bounds.minX + bounds.maxX) / 2, (bounds.minY + bounds.maxY) / 2);
-    this.setView({ center, resolution, rotation: 0 });
+    const x = (bounds.minX + bounds.maxX) / 2 + (resolution * (covered.right - covered.left)) / 2;
+    const y = (bounds.minY + bounds.maxY) / 2 + (resolution * (covered.top - covered.bottom)) / 2;
+    this.setView({ center: viewPoint(x, y), resolution, rotation: 0 });
     return true;
   }
 

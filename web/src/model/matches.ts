@@ -8,18 +8,20 @@ export type Level = 'sure' | 'likely' | 'doubtful';
 export const levelOf = (confidence: number): Level =>
   confidence >= 0.8 ? 'sure' : confidence >= 0.5 ? 'likely' : 'doubtful';
 
+/** A room of the sketch keeps its colour on every page; a matched room of the plan takes it over. */
+export const colourOfSketchRegion = (label: number): number => label - 1;
+
 export interface MatchRow extends Pair {
   readonly id: string;
   /** Index into the pair colours; the same on both sides. */
   readonly colour: number;
 }
 
-/** Standing pairs, worst first; what a person confirmed comes last. Colours follow the sketch's labels, so they stay put. */
+/** Standing pairs, worst first; what a person confirmed comes last. */
 export function matchRows(world: World): MatchRow[] {
   const standing = [...world.tables.pairs].filter(([, pair]) => pair.verdict !== 'rejected');
-  const colours = new Map([...new Set(standing.map(([, pair]) => pair.sketch))].sort((a, b) => a - b).map((label, i) => [label, i]));
   return standing
-    .map(([id, pair]): MatchRow => ({ ...pair, id, colour: colours.get(pair.sketch) ?? 0 }))
+    .map(([id, pair]): MatchRow => ({ ...pair, id, colour: colourOfSketchRegion(pair.sketch) }))
     .sort(
       (a, b) =>
         Number(a.verdict === 'confirmed') - Number(b.verdict === 'confirmed') ||

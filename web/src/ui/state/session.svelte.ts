@@ -2,7 +2,7 @@
  * What the page knows and can do, for every component: the world as the server tells it, this person's own acts on top,
  * the state of the link, and one way to send a command. Components read runes; nothing here touches the page.
  */
-import { mapPoint } from '../../geometry/points';
+import type { MapPoint } from '../../geometry/points';
 import type { Api } from '../../link/api';
 import { LiveLink, type Surroundings } from '../../link/live_link';
 import type { Entry, Outbox } from '../../link/outbox';
@@ -31,6 +31,7 @@ export interface Identity {
 export type InkListener = (ink: Message<'ink'>) => void;
 
 const kTickMs = 500;
+const kLookEveryMs = 500;
 /** An acknowledged act whose effect does not show within this time is no longer drawn as ours. */
 const kForgetAckedMs = 3_000;
 
@@ -56,6 +57,7 @@ export class Session {
   #latest: World = kEmptyWorld;
   #publishing = false;
   #epoch = 0;
+  #lookedMs = 0;
   readonly #acked = new Map<string, { command: Command; createdMs: number; ackedMs: number }>();
   readonly #outbox: Outbox;
   readonly #around: Surroundings;
@@ -129,8 +131,12 @@ export class Session {
     return () => this.#inkListeners.delete(listener);
   }
 
-  looksAt(p: readonly [number, number] | null, radius: number): void {
-    this.#link.presence(this.mode, p ? mapPoint(p[0], p[1]) : null);
+  /** Tells the others where this person looks, at most twice a second. */
+  looksAt(p: MapPoint | null, radius = 0): void {
+    const now = this.#around.nowMs();
+    if (p && now - this.#lookedMs < kLookEveryMs) return;
+    this.#lookedMs = now;
+    this.#link.presence(this.mode, p);
     if (p) this.#link.look({ x: p[0], y: p[1], radius });
   }
 
@@ -166,6 +172,7 @@ export class Session {
     this.#epoch = epoch;
     this.resolutionM = resolutionM;
     this.tiles.enterEpoch(epoch);
+    this.looksAt(null);
     this.#publish();
   }
 
