@@ -72,6 +72,7 @@ class AutoCompleteGraph::Impl {
   bool align(Learnt& learnt) const;
   void put_down(const Similarity2& map_from_layout, Learnt& learnt) const;
   Result<Ok> take_up(Learnt& learnt, const Progress& progress) const;
+  Result<Ok> release_tense(Learnt& learnt, const SolveInput& input, const Progress& progress) const;
   Result<Ok> round(Learnt& learnt, const std::vector<bool>& use, double sharpness, bool poses_fixed,
                    const Progress& progress, SolveInput* kept) const;
   SolveInput make_input(const Learnt& learnt, bool poses_fixed) const;
@@ -205,6 +206,17 @@ Result<Ok> AutoCompleteGraph::Impl::round(Learnt& l, const std::vector<bool>& us
   return Ok{};
 }
 
+/// Walls that were caught by something else (furniture before them) go back to where the plan expects them, and may be
+/// linked anew from there.
+Result<Ok> AutoCompleteGraph::Impl::release_tense(Learnt& l, const SolveInput& input, const Progress& progress) const {
+  const std::vector<bool> tense = tense_walls(*plan, l.state, params);
+  if (std::none_of(tense.begin(), tense.end(), [](bool t) { return t; })) return Ok{};
+  SolveInput without = input;
+  for (PieceLink& link : without.links)
+    if (tense[static_cast<std::size_t>(link.wall)]) link.weight = 0;
+  return solve(without, params, progress, l.state);
+}
+
 void AutoCompleteGraph::Impl::judge_walls(const std::vector<WallEvidence>& evidence, Learnt& l) const {
   for (std::size_t w = 0; w < evidence.size(); ++w) {
     l.walls[w] = judge_wall_state(evidence[w], l.linked_m[w], l.near_m[w], params);
@@ -221,8 +233,11 @@ Result<Ok> AutoCompleteGraph::Impl::take_up(Learnt& l, const Progress& progress)
     l.taken_way_m = std::min(all, l.taken_way_m + kTakeUp_m);
     std::vector<bool> use = nodes.spaced();
     for (std::size_t i = 0; i < use.size(); ++i) use[i] = use[i] && nodes.way_m()[i] <= l.taken_way_m;
-    for (const double sharpness : {1.0, 0.4})
-      if (const auto done = round(l, use, sharpness, true, progress, nullptr); !done) return done.error();
+    SolveInput input;
+    for (const double sharpness : {1.0, 0.4}) {
+      if (const auto done = round(l, use, sharpness, true, progress, &input); !done) return done.error();
+    }
+    if (const auto done = release_tense(l, input, progress); !done) return done.error();
     progress.tell(0.6 * l.taken_way_m / std::max(1e-6, all), "taking up the plan");
   }
   return Ok{};
@@ -275,7 +290,8 @@ Result<MergedMap> AutoCompleteGraph::Impl::update(const PoseGraph& graph, const 
       if (const auto done = take_up(work, progress); !done) return done.error();
       double sharpness = 0.6;
       for (int k = 0; k < params.rounds; ++k, sharpness *= 0.6) {
-        if (const auto done = round(work, nodes.spaced(), sharpness, false, progress, &input); !done) return done.error();
+        const bool poses_fixed = k < params.rounds / 2;
+        if (const auto done = round(work, nodes.spaced(), sharpness, poses_fixed, progress, &input); !done) return done.error();
         progress.tell(0.6 + 0.3 * (k + 1) / params.rounds, "correcting plan and map");
       }
       if (work.sigma_m.size() != plan->corners.size() || work.updates % params.covariance_every == 0) {

@@ -25,6 +25,17 @@ double apart_m(const PlanModel& plan, const PlanEdge& wall, const PlanEdge& know
 
 }  // namespace
 
+std::vector<bool> tense_walls(const PlanModel& plan, const GraphState& state, const AcgParams& params) {
+  std::vector<bool> tense;
+  for (const PlanEdge& wall : plan.walls) {
+    const Segment2 now = state.segment(wall);
+    const double heading = state.turn + wall.heading_rad;
+    const double across = -std::sin(heading) * (now.b - now.a).x() + std::cos(heading) * (now.b - now.a).y();
+    tense.push_back(std::abs(across) > 3 * std::hypot(0.01 * wall.length_m, std::sqrt(2.0) * params.sigma_corner_draw_m));
+  }
+  return tense;
+}
+
 bool mature(const PlanEdge& wall, double linked_m, const AcgParams& params) {
   return linked_m >= std::min(params.mature_m, std::max(0.15, 0.3 * wall.length_m));
 }

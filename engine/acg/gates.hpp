@@ -14,6 +14,9 @@ namespace smokemap {
 std::vector<double> wall_gates_m(const PlanModel& plan, const GraphState& state, const std::vector<WallState>& walls,
                                  const std::vector<double>& linked_m, const AcgParams& params);
 
+/// Walls that their links hold in a place that the plan finds hard to believe: turned by more than three sigma.
+std::vector<bool> tense_walls(const PlanModel& plan, const GraphState& state, const AcgParams& params);
+
 /// Evidence over which length lets a wall move by itself.
 bool mature(const PlanEdge& wall, double linked_m, const AcgParams& params);
 

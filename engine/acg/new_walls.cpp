@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kStep_m = 0.10;
 constexpr double kExplained_m = 0.25;     ///< from a wall's face
-constexpr double kMinFragment_m = 0.35;
+constexpr double kMinFragment_m = 0.25;
 constexpr double kSameLine_m = 0.10;
 constexpr double kSameTurn_rad = 0.12;
 constexpr double kHole_m = 0.35;
@@ -18,6 +18,7 @@ constexpr double kHalfThickness_m = 0.06; ///< of a wall that was seen from one 
 constexpr double kTied_m = 0.40;          ///< from a new wall's end to another wall
 constexpr double kFurniture_m = 1.00;     ///< depth in front of a wall at which furniture stands
 constexpr double kSurelyWall_m = 3.0;
+constexpr double kSide_m = 0.30;          ///< depth from which a thing behind the end of a face is furniture, not a wall's thickness
 
 /// Part of a piece that nothing explains, map frame, free space on the left.
 struct Fragment {
@@ -165,11 +166,25 @@ std::vector<FoundLine> center_lines(const std::vector<FoundLine>& faces) {
   return out;
 }
 
+/// A box shows its side behind the end of its front: something square to the face begins there and leads away from
+/// where the face was seen.
+bool turns_away(const Segment2& face, const Point2& end, const std::vector<Fragment>& fragments) {
+  const Point2 u = face.direction(), n = face.normal();
+  return std::any_of(fragments.begin(), fragments.end(), [&](const Fragment& f) {
+    if (std::abs(f.segment.direction().dot(u)) > std::sin(0.3)) return false;
+    const double behind_a = -n.dot(f.segment.a - end), behind_b = -n.dot(f.segment.b - end);
+    return std::abs(u.dot(f.segment.midpoint() - end)) < 0.2 && std::min(behind_a, behind_b) > -0.15 &&
+           std::min(behind_a, behind_b) < 0.3 && std::max(behind_a, behind_b) > kSide_m;
+  });
+}
+
 /// Walls hang together: how a candidate's ends meet others, and whether it is only the front of something before a wall.
-bool built_like_a_wall(const FoundLine& line, const std::vector<FoundLine>& others, const std::vector<KnownWall>& known) {
+bool built_like_a_wall(const FoundLine& line, const std::vector<FoundLine>& others, const std::vector<KnownWall>& known,
+                       const std::vector<Fragment>& fragments) {
   const Segment2& s = line.segment;
   int tied = 0;
   for (const Point2& end : {s.a, s.b}) {
+    if (turns_away(s, end, fragments)) return false;
     bool meets = std::any_of(known.begin(), known.end(), [&](const KnownWall& k) { return distance(k.segment, end) < k.half + kTied_m; });
     for (const FoundLine& o : others)
       meets = meets || (&o != &line && o.segment.length() > 1.0 && distance(o.segment, end) < kTied_m);
@@ -208,7 +223,7 @@ std::vector<NewWall> find_new_walls(const std::vector<NodeView>& views, const st
   const std::vector<FoundLine> lines = center_lines(faces);
   std::vector<NewWall> out;
   for (const FoundLine& line : lines) {
-    if (line.segment.length() < params.new_wall_min_m || !built_like_a_wall(line, lines, known)) continue;
+    if (line.segment.length() < params.new_wall_min_m || !built_like_a_wall(line, lines, known, fragments)) continue;
     out.push_back({line.segment, line.evidence_m, std::clamp(line.evidence_m / (line.segment.length() + 0.5), 0.1, 0.95)});
   }
   return out;
