@@ -24,7 +24,7 @@ struct LocalizerParams {
   double sigma_turn_rad = 0.01;   ///< added at every update
   double scale_sigma = 0.08;      ///< spread of the plan's unknown local scale among the particles
   double resolution_m = 0.05;     ///< of the distance field
-  double lost_below = 0.45;       ///< share of hits explained under which the answer is "lost"
+  double lost_below = 0.50;       ///< running share of hits explained under which the answer is "lost"
   double lost_sigma_m = 1.5;      ///< spread above which the answer is "lost"
   Result<Ok> validate() const;
 };
@@ -38,7 +38,7 @@ struct LocalizerWall {
 struct LocalizerEstimate {
   Pose2 T_map_robot;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< x, y, heading
-  double explained = 0;   ///< share of the latest hits within two sigma of a wall
+  double explained = 0;   ///< running share of hits within 1.25 sigma of a wall's face
   int particles = 0;
   bool lost = true;       ///< spread out, ambiguous, or the walls do not explain what is seen
 };
