@@ -10,7 +10,10 @@ const look: Rules = { wants: () => 'none', fingerDraws: 'never' };
 class Hand {
   state: PointerState = kIdle;
   said: Decision[] = [];
-  constructor(readonly rules: Rules) {}
+  readonly rules: Rules;
+  constructor(rules: Rules) {
+    this.rules = rules;
+  }
   #feed(sample: Omit<PointerSample, 'width'> & { width?: number }): this {
     const { state, decisions } = step(this.state, { width: 1, ...sample }, this.rules);
     this.state = state;
