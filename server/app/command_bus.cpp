@@ -1,7 +1,6 @@
 #include "server/app/command_bus.hpp"
 
 #include <algorithm>
-#include <set>
 
 #include "server/access/permission.hpp"
 #include "server/wire/commands_json.hpp"
@@ -11,8 +10,6 @@ namespace {
 
 constexpr int kPage = 500;
 constexpr JsonLimits kStoredLimits{64 * 1024 * 1024, 64};
-const Identity kServer{"server", "server", Role::kCommander};
-constexpr const char* kGoalEnded = "goal_ended";  // in the log only; not a command
 
 CommandReply refusal(const std::string& id, const Error& error, std::optional<std::int64_t> seq = std::nullopt) {
   return {id, seq, to_string(error.code), error.message};
@@ -73,26 +70,15 @@ bool ViewKeeper::note(const Command& command, const Json& data) {
   return false;
 }
 
-Result<ViewKeeper> replay_log(Store& store, EnginePort& engine, const ReplayOptions& options) {
+Result<ViewKeeper> replay_log(Store& store, EnginePort& engine, Origin origin, std::optional<std::int64_t> last) {
   ViewKeeper keeper;
-  std::set<std::string> ended;
-  const auto collect = [&ended](const Event& event) -> Result<Ok> {
-    const auto data = event.name == kGoalEnded ? parse_json(event.data) : Result<Json>(Json());
-    if (data && data->contains("goal_id") && (*data)["goal_id"].is_string()) ended.insert((*data)["goal_id"].get<std::string>());
-    return Ok{};
-  };
-  if (auto read = for_each_event(store, options.last, collect); !read) return read.error();
   const auto redo = [&](const Event& event) -> Result<Ok> {
-    if (is_refused(event) || event.name == kGoalEnded) return Ok{};
+    if (is_refused(event)) return Ok{};
     const auto command = command_of(event);
-    if (!command) return Ok{};  // of another version; it stays in the log
-    if (const auto* goal = std::get_if<SetGoal>(&*command); goal && (!options.with_goals || ended.contains(goal->goal.id)))
-      return Ok{};
-    const auto applied = engine.apply(*command);
-    if (applied) keeper.note(*command, *parse_json(event.data, kStoredLimits));
+    if (command && engine.apply(*command, origin)) keeper.note(*command, *parse_json(event.data, kStoredLimits));
     return Ok{};
   };
-  if (auto read = for_each_event(store, options.last, redo); !read) return read.error();
+  if (auto read = for_each_event(store, last, redo); !read) return read.error();
   return keeper;
 }
 
@@ -102,37 +88,8 @@ CommandBus::CommandBus(Store& store, EnginePort& engine, std::shared_ptr<const C
 
 CommandBus::~CommandBus() { stop(); }
 
-Result<Ok> CommandBus::log_server_act(const std::string& id, const std::string& name, const Json& data) {
-  Event event;
-  event.time_ms = clock_->now() / 1'000'000;
-  event.who = kServer;
-  event.command_id = id;
-  event.name = name;
-  event.data = to_text(data);
-  const auto seq = store_.append(event);
-  if (!seq) return seq.error();
-  return store_.set_outcome(*seq, "done");
-}
-
-Result<Ok> CommandBus::replay(Stamp goal_age) {
-  // Old goals are ended in the log first; then the replay passes them over.
-  std::map<std::string, std::int64_t> open;
-  const auto look = [&open](const Event& event) -> Result<Ok> {
-    const auto data = parse_json(event.data, kStoredLimits);
-    if (is_refused(event) || !data || !data->contains("goal_id") || !(*data)["goal_id"].is_string()) return Ok{};
-    const std::string goal = (*data)["goal_id"].get<std::string>();
-    if (event.name == "set_goal") open[goal] = event.time_ms;
-    if (event.name == "cancel_goal" || event.name == kGoalEnded) open.erase(goal);
-    return Ok{};
-  };
-  if (auto read = for_each_event(store_, std::nullopt, look); !read) return read;
-  const std::int64_t now_ms = clock_->now() / 1'000'000;
-  for (const auto& [goal, time_ms] : open) {
-    if (now_ms - time_ms <= goal_age / 1'000'000) continue;
-    const Json data = {{"goal_id", goal}, {"state", "cancelled"}, {"reason", "the server was started again"}};
-    if (auto logged = log_server_act("end-" + goal + "-" + std::to_string(now_ms), kGoalEnded, data); !logged) return logged;
-  }
-  auto keeper = replay_log(store_, engine_, {});
+Result<Ok> CommandBus::replay() {
+  auto keeper = replay_log(store_, engine_, Origin::kHistory);
   if (!keeper) return keeper.error();
   keeper_ = std::move(*keeper);
   listener_(keeper_.view());
@@ -175,42 +132,18 @@ void CommandBus::submit(const Identity& who, CommandMessage message, Reply reply
   reply({message.id, std::nullopt, "busy", "the server is busy; try again in a moment"});
 }
 
-void CommandBus::note_goals(const Snapshot& snapshot) {
-  const std::lock_guard lock(mutex_);
-  for (const GoalView& view : snapshot.goals) {
-    if (!is_final(view.goal.state) || logged_goals_.contains(view.goal.id)) continue;
-    logged_goals_[view.goal.id] = ended_goals_[view.goal.id] = to_string(view.goal.state);
-    wake_.notify_one();
-  }
-}
-
 void CommandBus::run() {
   for (;;) {
-    std::optional<Job> job;
+    Job job;
     {
       std::unique_lock lock(mutex_);
-      wake_.wait(lock, [this] { return stopping_ || !waiting_.empty() || !ended_goals_.empty(); });
+      wake_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
       if (stopping_) return;
-      if (!waiting_.empty()) {
-        job = std::move(waiting_.front());
-        waiting_.pop_front();
-      }
+      job = std::move(waiting_.front());
+      waiting_.pop_front();
     }
-    if (job)
-      job->reply(carry_out(*job));
-    else
-      log_ended_goals();
+    job.reply(carry_out(job));
   }
-}
-
-void CommandBus::log_ended_goals() {
-  std::map<std::string, std::string> ended;
-  {
-    const std::lock_guard lock(mutex_);
-    ended.swap(ended_goals_);
-  }
-  for (const auto& [goal, state] : ended)  // failing to note it costs no more than a goal offered again
-    (void)log_server_act("end-" + goal, kGoalEnded, {{"goal_id", goal}, {"state", state}}).ok();
 }
 
 std::optional<CommandReply> CommandBus::earlier_answer(const Job& job) {
@@ -239,7 +172,7 @@ CommandReply CommandBus::carry_out(const Job& job) {
 }
 
 CommandReply CommandBus::apply_stored(std::int64_t seq, const Job& job, const Command& command) {
-  const auto applied = engine_.apply(command);
+  const auto applied = engine_.apply(command, Origin::kLive);
   const std::string outcome =
       applied ? "done" : std::string("refused: ") + to_string(applied.error().code) + ": " + applied.error().message;
   (void)store_.set_outcome(seq, outcome).ok();  // the log has the command; replay decides anew
@@ -249,7 +182,7 @@ CommandReply CommandBus::apply_stored(std::int64_t seq, const Job& job, const Co
 }
 
 CommandReply CommandBus::stop_robots(const Job& job, const Command& command) {
-  const auto applied = engine_.apply(command);
+  const auto applied = engine_.apply(command, Origin::kLive);
   const auto earlier = store_.find(job.message.id);
   if (earlier && *earlier) return reply_of(**earlier);
   const std::int64_t now_ms = clock_->now() / 1'000'000;

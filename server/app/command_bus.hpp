@@ -3,7 +3,6 @@
 #include <condition_variable>
 #include <deque>
 #include <functional>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -47,16 +46,13 @@ class CommandBus final : public CommandSink {
   CommandBus(const CommandBus&) = delete;
   CommandBus& operator=(const CommandBus&) = delete;
 
-  /// Brings the engine to where the log ends; before `start`. Goals that were not reached are cancelled in the log when
-  /// they are older than `goal_age`: a robot must not set off by itself because a server was started again.
-  Result<Ok> replay(Stamp goal_age = from_seconds(60));
+  /// Brings the engine to where the log ends; before `start`.
+  Result<Ok> replay();
   void start();
   /// Answers what waits with "io" and joins the thread.
   void stop();
 
   void submit(const Identity& who, CommandMessage message, Reply reply) override;
-  /// Goals that ended are noted in the log, so that they do not begin again after a restart. Any thread.
-  void note_goals(const Snapshot& snapshot);
 
  private:
   struct Job {
@@ -69,8 +65,6 @@ class CommandBus final : public CommandSink {
   CommandReply stop_robots(const Job& job, const Command& command);
   std::optional<CommandReply> earlier_answer(const Job& job);
   CommandReply apply_stored(std::int64_t seq, const Job& job, const Command& command);
-  void log_ended_goals();
-  Result<Ok> log_server_act(const std::string& id, const std::string& name, const Json& data);
 
   Store& store_;
   EnginePort& engine_;
@@ -81,18 +75,12 @@ class CommandBus final : public CommandSink {
   std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<Job> waiting_;
-  std::map<std::string, std::string> ended_goals_;  ///< id -> state, still to be logged
-  std::map<std::string, std::string> logged_goals_;
   bool stopping_ = false;
   std::thread thread_;
 };
 
-/// Applies events 1..`last` of the log to an engine (all of them without `last`). Refused ones and unreadable ones are
-/// passed over. Used at the start and for looking back.
-struct ReplayOptions {
-  std::optional<std::int64_t> last;
-  bool with_goals = true;
-};
-Result<ViewKeeper> replay_log(Store& store, EnginePort& engine, const ReplayOptions& options);
+/// Applies events 1..`last` of the log to an engine (all of them without `last`). Refused ones, and those of another version
+/// that cannot be read, are passed over. Used at the start and for looking back.
+Result<ViewKeeper> replay_log(Store& store, EnginePort& engine, Origin origin, std::optional<std::int64_t> last = {});
 
 }  // namespace smokemap::server

@@ -2,9 +2,10 @@
 
 #include <spdlog/spdlog.h>
 
-#include <condition_variable>
+#include <chrono>
 #include <iostream>
 #include <mutex>
+#include <thread>
 
 #include "core/check.hpp"
 #include "server/app/command_bus.hpp"
@@ -15,7 +16,8 @@ namespace smokemap::server {
 namespace {
 
 constexpr std::size_t kMostWaitingJobs = 32;
-constexpr auto kReplayDeadline = std::chrono::seconds(5);
+constexpr auto kReplayDeadline = std::chrono::seconds(3);
+constexpr auto kReplayLook = std::chrono::milliseconds(20);
 
 /// Lets a listener outlive the server: after `close` nothing gets through.
 class Gate {
@@ -35,44 +37,18 @@ class Gate {
   EnginePort::Listener inner_;
 };
 
-/// The snapshot that contains revision `wanted`, or the newest at the deadline.
-std::shared_ptr<const Snapshot> settled(EnginePort& engine, std::uint64_t wanted) {
-  struct Shared {
-    std::mutex mutex;
-    std::condition_variable news;
-    std::uint64_t revision = 0;
-  };
-  const auto shared = std::make_shared<Shared>();
-  engine.on_snapshot([shared](const std::shared_ptr<const Snapshot>& snapshot) {
-    const std::lock_guard lock(shared->mutex);
-    shared->revision = snapshot->revision;
-    shared->news.notify_all();
-  });
-  std::unique_lock lock(shared->mutex);
-  shared->news.wait_for(lock, kReplayDeadline, [&] {
-    return shared->revision >= wanted || engine.snapshot()->revision >= wanted;
-  });
-  lock.unlock();
-  return engine.snapshot();
-}
-
-/// Remembers the newest revision that an engine promised.
-class PromiseKeeper final : public EnginePort {
- public:
-  explicit PromiseKeeper(EnginePort& inner) : inner_(inner) {}
-  Result<std::uint64_t> apply(const Command& command) override {
-    auto revision = inner_.apply(command);
-    if (revision) promised_ = std::max(promised_, *revision);
-    return revision;
+/// Waits for what the engine makes of the commands: snapshots newer than they are and, when there is a drawing, its regions.
+std::shared_ptr<const Snapshot> settled(EnginePort& engine) {
+  const auto deadline = std::chrono::steady_clock::now() + kReplayDeadline;
+  const std::uint64_t before = engine.snapshot()->revision;
+  for (;;) {
+    const auto snapshot = engine.snapshot();
+    const bool drawn = snapshot->sketch && !snapshot->sketch->sketch.strokes.empty();
+    const bool read = !drawn || !snapshot->sketch->regions.empty() || !snapshot->sketch->warning.empty();
+    if ((snapshot->revision >= before + 2 && read) || std::chrono::steady_clock::now() > deadline) return snapshot;
+    std::this_thread::sleep_for(kReplayLook);
   }
-  std::shared_ptr<const Snapshot> snapshot() const override { return inner_.snapshot(); }
-  void on_snapshot(Listener listener) override { inner_.on_snapshot(std::move(listener)); }
-  std::uint64_t promised() const { return promised_; }
-
- private:
-  EnginePort& inner_;
-  std::uint64_t promised_ = 0;
-};
+}
 
 }  // namespace
 
@@ -116,7 +92,6 @@ struct Server::Impl {
                                        CommandBus::Limits{});
     if (auto replayed = bus->replay(); !replayed) return replayed;
     gate = std::make_shared<Gate>([this](std::shared_ptr<const Snapshot> snapshot) {
-      bus->note_goals(*snapshot);
       hub->show(std::move(snapshot));
     });
     engine.on_snapshot([gate = gate](std::shared_ptr<const Snapshot> snapshot) { (*gate)(std::move(snapshot)); });
@@ -142,9 +117,8 @@ struct Server::Impl {
 
   Result<std::shared_ptr<const Snapshot>> look_back(std::int64_t at) {
     const auto past = options.make_replay_engine();
-    PromiseKeeper keeper(*past);
-    if (auto replayed = replay_log(*store, keeper, {at, true}); !replayed) return replayed.error();
-    return settled(*past, keeper.promised());
+    if (auto replayed = replay_log(*store, *past, Origin::kLive, at); !replayed) return replayed.error();
+    return settled(*past);
   }
 
   /// In the order in which nobody is left waiting for somebody who is gone.

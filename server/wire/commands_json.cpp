@@ -12,7 +12,7 @@ const std::vector<const char*> kStrokeKinds{"wall", "door", "note"};
 const std::vector<const char*> kWallVerdicts{"none", "gone", "there"};
 const std::vector<const char*> kVerdicts{"proposed", "confirmed", "rejected"};
 constexpr std::size_t kMostStrokePoints = 20'000;
-constexpr int kMostLabels = 1'000'000;
+constexpr int kMostWalls = 1'000'000;
 
 const char* frame_word(PlaceFrame frame) { return kFrames[static_cast<std::size_t>(frame)]; }
 
@@ -56,7 +56,7 @@ Result<Command> remove_anchor(const Json& data, const Authorship&) {
 }
 Result<Command> judge_wall(const Json& data, const Authorship&) {
   Fields f(data, "judge_wall");
-  return finish(f, JudgeWall{f.integer("wall", 0, kMostLabels),
+  return finish(f, JudgeWall{f.integer("wall", 0, kMostWalls),
                              static_cast<WallVerdict>(f.word("verdict", kWallVerdicts))});
 }
 Result<Command> add_stroke(const Json& data, const Authorship& by) {
@@ -82,8 +82,7 @@ Result<Command> set_sketch_sheet(const Json& data, const Authorship&) {
 }
 Result<Command> judge_pair(const Json& data, const Authorship&) {
   Fields f(data, "judge_pair");
-  return finish(f, JudgePair{f.integer("sketch", 0, kMostLabels), f.integer("plan", 0, kMostLabels),
-                             static_cast<Verdict>(f.word("verdict", kVerdicts))});
+  return finish(f, JudgePair{f.point("sketch_px"), f.point("plan_px"), static_cast<Verdict>(f.word("verdict", kVerdicts))});
 }
 Result<Command> place_poi(const Json& data, const Authorship& by) {
   Fields f(data, "place_poi");
@@ -174,8 +173,8 @@ struct DataOf {
   Json operator()(const ClearSketch&) const { return Json::object(); }
   Json operator()(const SetSketchSheet& c) const { return {{"width", c.width_px}, {"height", c.height_px}}; }
   Json operator()(const JudgePair& c) const {
-    return {{"sketch", c.label_sketch},
-            {"plan", c.label_map},
+    return {{"sketch_px", plain_point(c.p_sketch_px)},
+            {"plan_px", plain_point(c.p_layout_px)},
             {"verdict", kVerdicts[static_cast<std::size_t>(c.verdict)]}};
   }
   Json operator()(const PlacePoi& c) const {

@@ -3,22 +3,34 @@
 #include <functional>
 #include <memory>
 
-#include "session/commands.hpp"
-#include "session/snapshot.hpp"
+#include "session/engine.hpp"
 
 namespace smokemap::server {
 
-/// What the server needs of the engine, so that tests can put a double in its place.
-/// Thread-safe; the listener is called from the engine's thread and returns at once.
+/// What the server needs of the engine, so that tests can put a double in its place. Thread-safe.
 class EnginePort {
  public:
-  using Listener = std::function<void(std::shared_ptr<const Snapshot>)>;
+  using Listener = Engine::SnapshotListener;
 
   virtual ~EnginePort() = default;
-  /// The future snapshot that contains the command has a revision of at least the returned one.
-  virtual Result<std::uint64_t> apply(const Command& command) = 0;
+  /// See Engine::apply.
+  virtual Result<Ok> apply(const Command& command, Origin origin) = 0;
+  /// The latest; never null.
   virtual std::shared_ptr<const Snapshot> snapshot() const = 0;
+  /// Called from the engine's thread for every new snapshot. One listener, which returns at once.
   virtual void on_snapshot(Listener listener) = 0;
+};
+
+/// The real one.
+class EngineAdapter final : public EnginePort {
+ public:
+  explicit EngineAdapter(Engine& engine) : engine_(engine) {}
+  Result<Ok> apply(const Command& command, Origin origin) override { return engine_.apply(command, origin); }
+  std::shared_ptr<const Snapshot> snapshot() const override { return engine_.snapshot(); }
+  void on_snapshot(Listener listener) override { engine_.on_snapshot(std::move(listener)); }
+
+ private:
+  Engine& engine_;
 };
 
 }  // namespace smokemap::server

@@ -14,12 +14,8 @@ struct SheetInPicture {
   std::array<Point2, 4> corners{Point2::Zero(), Point2::Zero(), Point2::Zero(), Point2::Zero()};  ///< of the picture, px
 };
 
-/// Reads a layout document (docs/wire.md, section 1). `corners` and `wall_corners` are used where both are given and fit
-/// the walls; otherwise ends of walls closer than half a pixel become one corner.
-/// kInvalidArgument names the field; kTooLarge beyond 20 000 walls.
+/// The layout document as part of other JSON; recording/layout_json.hpp says what it holds and what is refused.
 Result<LayoutMap> layout_from_json(const Json& json);
-
-/// Writes all of it; the inverse of layout_from_json. With `sheet` also where it lay in the picture.
 Json layout_to_json(const LayoutMap& layout, const std::optional<SheetInPicture>& sheet = std::nullopt);
 
 }  // namespace smokemap::server
