@@ -166,6 +166,15 @@ cv::Mat outside_of(const cv::Mat& shut, double radius) {
   return cv::Mat(outside(cv::Rect(margin + 2, margin + 2, shut.cols, shut.rows))).clone();
 }
 
+/// Between lines that were drawn twice there is no room.
+void fill_slivers(cv::Mat& free, double least_area) {
+  cv::Mat labels, stats, centroids;
+  const int count = cv::connectedComponentsWithStats(free, labels, stats, centroids, 4);
+  for (int y = 0; y < free.rows; ++y)
+    for (int x = 0; x < free.cols; ++x)
+      if (const int label = labels.at<int>(y, x); label > 0 && label < count && stats.at<int>(label, cv::CC_STAT_AREA) < least_area) free.at<uchar>(y, x) = 0;
+}
+
 Result<Ok> check_sheet(const SketchMap& sketch, const SketchParams& params) {
   if (sketch.width_px < 1 || sketch.height_px < 1) return fail(Errc::kInvalidArgument, "the sheet of the sketch has no size");
   if (1e-6 * sketch.width_px * static_cast<double>(sketch.height_px) > params.max_sheet_megapixels)
@@ -206,15 +215,17 @@ Result<CleanSketch> clean_sketch(const SketchMap& sketch, const SketchParams& pa
 
   const double least = 0.002 * finder.extent() * finder.extent();
   double radius = 0.5 * params.close_gap_share * finder.extent();
-  cv::Mat inside = (shut == 0) & (outside_of(shut, radius) == 0);
-  if (cv::countNonZero(inside) < least) {
-    radius = 0.5 * params.report_gap_share * finder.extent();
-    inside = (shut == 0) & (outside_of(shut, radius) == 0);
-    if (cv::countNonZero(inside) < least) return fail(Errc::kDegenerate, "no closed room: walls do not meet anywhere");
+  const cv::Mat inside = (shut == 0) & (outside_of(shut, radius) == 0);
+  const double wide = 0.5 * params.report_gap_share * finder.extent();
+  const cv::Mat inside_wide = (shut == 0) & (outside_of(shut, wide) == 0);
+  if (cv::countNonZero(inside_wide) < least) return fail(Errc::kDegenerate, "no closed room: walls do not meet anywhere");
+  if (cv::countNonZero(inside_wide) > 1.5 * cv::countNonZero(inside)) {  // most of the building would run out through one gap
+    radius = wide;
     clean.warnings.push_back("The outline has wide gaps; where it ends is a guess.");
   }
   // Openings are free on the inside, and where they lie between two rooms.
   clean.free_space = (drawn == 0) & (outside_of(shut, radius) == 0);
+  fill_slivers(clean.free_space, 0.5 * least);
   const auto open = std::count_if(clean.gaps.begin(), clean.gaps.end(), [](const SketchGap& g) { return !g.closed_by_us; });
   if (open > 0) clean.warnings.push_back(std::to_string(open) + (open == 1 ? " gap is left open: a door, or close it." : " gaps are left open: doors, or close them."));
   return clean;

@@ -126,7 +126,7 @@ std::vector<Polyline> without_hatching(std::vector<Polyline> lines, double spaci
       if (!straight(i) || !straight(j)) continue;
       const Segment2 one = chord(i), two = chord(j);
       const double ratio = one.length() / two.length();
-      if (ratio < 0.3 || ratio > 3.3 || line_angle_between(one.heading(), two.heading()) > radians(10)) continue;
+      if (ratio < 0.4 || ratio > 2.5 || line_angle_between(one.heading(), two.heading()) > radians(10)) continue;
       const double apart = std::abs(signed_line_distance(one, two.midpoint()));
       const double shift = std::abs(along(one, two.midpoint()) - 0.5) * one.length();
       if (apart < 2 || apart > spacing_px || apart > 0.8 * std::max(one.length(), two.length()) || shift > 0.6 * (one.length() + two.length())) continue;

@@ -7,27 +7,11 @@
 
 #include "grids/paper_view.hpp"
 #include "sketch/drawing_lines.hpp"
+#include "sketch/pen.hpp"
 #include "sketch/skeleton.hpp"
 
 namespace smokemap {
 namespace {
-
-/// How much pen there is: dark or coloured, 0..255. A pen is usually both, printed rulings are faint and gray.
-cv::Mat pen_strength(const PaperView& view) {
-  cv::Mat darkest(view.darkness.size(), CV_8UC1);
-  for (int y = 0; y < darkest.rows; ++y)
-    for (int x = 0; x < darkest.cols; ++x)
-      darkest.at<uchar>(y, x) = cv::saturate_cast<uchar>(view.darkness.at<uchar>(y, x) + view.chroma.at<uchar>(y, x));
-  return darkest;
-}
-
-cv::Mat pen_mask(const cv::Mat& strength) {
-  cv::Mat smooth, mask;
-  cv::GaussianBlur(strength, smooth, {3, 3}, 0);
-  cv::threshold(smooth, mask, ink_threshold(smooth, 0.22, 0.5), 255, cv::THRESH_BINARY);
-  cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
-  return mask;
-}
 
 /// Figures too small to be walls: dots, holes of the punch, grain. Letters are told by their place and size.
 void drop_small_figures(cv::Mat& mask, double dot_px, double text_px) {
@@ -77,10 +61,10 @@ Result<SketchPhoto> read_drawing(const cv::Mat& picture, const SketchPhotoParams
   const double side = std::max(work.bgr.rows, work.bgr.cols);
   progress.tell(0.1, "light");
   const PaperView view = divide_light(work.bgr, params.background_share);
-  const cv::Mat strength = pen_strength(view);
-  cv::Mat mask = pen_mask(strength);
+  PenInk pen_ink = find_pen(view);
+  cv::Mat& mask = pen_ink.mask;
   SketchPhoto photo;
-  const int ruled = erase_ruled_lines(mask, strength, params.ruled_turn_deg);
+  const int ruled = pen_ink.coloured ? 0 : erase_ruled_lines(mask, pen_ink.strength, params.ruled_turn_deg);
   if (ruled > 0) photo.warnings.push_back("The paper is ruled: " + std::to_string(ruled) + " printed lines were left out.");
   drop_small_figures(mask, params.min_stroke_share * side, params.text_share * side);
   if (progress.cancelled()) return fail(Errc::kCancelled, "reading the drawing was cancelled");
