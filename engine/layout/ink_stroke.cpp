@@ -5,6 +5,7 @@
 #include "layout/ink_stroke.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -14,16 +15,46 @@ namespace {
 
 struct Ink {
   const cv::Mat& darkness;
-  int threshold;
-  double cap_px;  ///< widest cross-section that is looked at
+  cv::Mat mask;        ///< CV_8UC1, 255 = ink
+  double cap_px = 0;   ///< widest cross-section that is looked at
+  double black = 255;  ///< darkness of a stroke that blur has not thinned
 
   int at(const Point2& p) const {
     const int x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
     if (x < 0 || y < 0 || x >= darkness.cols || y >= darkness.rows) return 0;
     return darkness.at<uchar>(y, x);
   }
-  bool inked(const Point2& p) const { return at(p) >= threshold; }
+  bool inked(const Point2& p) const {
+    const int x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
+    return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x) != 0;
+  }
 };
+
+cv::Mat ink_mask(const cv::Mat& darkness, const LayoutParams& params) {
+  const int reach = std::max(3, std::max(darkness.rows, darkness.cols) / 280);
+  cv::Mat level;
+  cv::dilate(darkness, level, cv::getStructuringElement(cv::MORPH_RECT, {2 * reach + 1, 2 * reach + 1}));
+  level.convertTo(level, CV_8U, 0.5);
+  cv::min(level, 255 * params.ink_high, level);
+  cv::max(level, 255 * params.ink_low, level);
+  return darkness >= level;
+}
+
+/// The darkness of what is clearly ink: the upper quartile of everything darker than a mid gray.
+double usual_black(const cv::Mat& darkness) {
+  std::array<int, 256> histogram{};
+  for (int y = 0; y < darkness.rows; ++y)
+    for (int x = 0; x < darkness.cols; ++x) ++histogram[darkness.at<uchar>(y, x)];
+  const auto above = [&](int from) {
+    double count = 0;
+    for (int v = from; v < 256; ++v) count += histogram[static_cast<std::size_t>(v)];
+    return count;
+  };
+  const double ink = above(110);
+  int black = 255;
+  while (black > 110 && above(black) < 0.25 * ink) --black;
+  return ink > 0 ? black : 255;
+}
 
 struct CrossSection {
   double middle = 0;  ///< offset of the ink's middle along the normal
@@ -161,7 +192,7 @@ void measure(const Ink& ink, InkStroke& stroke, double width) {
     if (!cut) continue;
     dark += ink.at(p + cut->middle * n) / 255.0;
     if (cut->width > 1.5 * width + 1) continue;
-    double sum = 0, peak = 1;
+    double sum = 0, peak = 0.8 * ink.black;
     for (double o = cut->middle - 0.5 * cut->width - 2; o <= cut->middle + 0.5 * cut->width + 2; o += 1) {
       const double value = ink.at(p + o * n);
       sum += value;
@@ -251,9 +282,9 @@ std::vector<Segment2> find_edges(const cv::Mat& darkness) {
 
 }  // namespace
 
-std::vector<InkStroke> trace_strokes(const cv::Mat& darkness, int threshold, const LayoutParams& params) {
+std::vector<InkStroke> trace_strokes(const cv::Mat& darkness, const LayoutParams& params) {
   const double side = std::max(darkness.rows, darkness.cols);
-  const Ink ink{darkness, threshold, params.max_wall_share * side};
+  const Ink ink{darkness, ink_mask(darkness, params), params.max_wall_share * side, usual_black(darkness)};
   Tracer tracer(ink, params);
   for (const auto& edge : find_edges(darkness)) {
     if (edge.length() < 5) break;

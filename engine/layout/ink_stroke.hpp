@@ -22,7 +22,8 @@ struct InkStroke {
 /// Finds straight pieces of ink: edges (line segment detector, in strips so that memory stays small), for each the width of
 /// the ink behind it, then the centre line is followed along the ink as far as it goes. Longest first; every piece of ink
 /// belongs to one stroke of each direction.
-/// @param darkness CV_8UC1, 0 paper .. 255 black;  @param threshold from here on it is ink
-std::vector<InkStroke> trace_strokes(const cv::Mat& darkness, int threshold, const LayoutParams& params);
+/// Ink is what is darker than half of the darkest around it (and than ink_low), so that faint thin lines keep their width.
+/// @param darkness CV_8UC1, 0 paper .. 255 black
+std::vector<InkStroke> trace_strokes(const cv::Mat& darkness, const LayoutParams& params);
 
 }  // namespace smokemap

@@ -14,13 +14,13 @@ struct LayoutParams {
 
   // light and colour
   double background_share = 0.035;   ///< radius of what counts as paper around a pixel
-  double ink_low = 0.42;             ///< darkness threshold (1 = black) stays between these two
-  double ink_high = 0.68;
+  double ink_low = 0.20;             ///< ink is half as dark as the darkest around it, within these limits (1 = black)
+  double ink_high = 0.50;
   double colour_chroma = 0.27;       ///< from here on a pixel is coloured: signs, routes, headers
 
   // walls
   double min_wall_share = 0.008;     ///< shorter pieces are text, furniture or noise
-  double max_wall_share = 0.035;     ///< thicker is no wall: frames, blocks of colour
+  double max_wall_share = 0.022;     ///< thicker is no wall: frames, blocks of colour
   double thin_ratio = 0.30;          ///< of the main thickness: below are door leaves, treads, furniture
   double merge_angle_deg = 3.0;      ///< collinear pieces become one wall
   double snap_walls = 1.6;           ///< loose ends within this many thicknesses of a crossing are joined to it

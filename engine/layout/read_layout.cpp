@@ -47,6 +47,14 @@ void add_warnings(LayoutMap& map, const WallStrokes& strokes, double extent_px) 
   else if (!map.scale->by_person) map.warnings.push_back("The scale is guessed from doors: measure one length.");
 }
 
+/// Darkness without what has a colour, and without signs: routes, headers and pictograms are no ink.
+cv::Mat gray_ink(const PaperView& view, const cv::Mat& covered) {
+  cv::Mat ink;
+  cv::subtract(view.darkness, view.chroma, ink);  // saturates at zero
+  ink.setTo(0, covered);
+  return ink;
+}
+
 Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& options, const LayoutParams& params, const Progress& progress) {
   if (const auto valid = params.validate(); !valid) return valid.error();
   if (options.metres_per_pixel && !(*options.metres_per_pixel > 0 && std::isfinite(*options.metres_per_pixel)))
@@ -79,7 +87,7 @@ Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& 
   const Signs signs = find_signs(view, params);
   if (progress.cancelled()) return fail(Errc::kCancelled, "reading the plan was cancelled");
   progress.tell(0.35, "walls");
-  const auto strokes = trace_strokes(view.darkness, ink_threshold(view.darkness, params.ink_low, params.ink_high), params);
+  const auto strokes = trace_strokes(gray_ink(view, signs.covered), params);
   if (progress.cancelled()) return fail(Errc::kCancelled, "reading the plan was cancelled");
   progress.tell(0.75, "rooms");
   const WallStrokes chosen = select_walls(strokes, work.bgr.size(), params);

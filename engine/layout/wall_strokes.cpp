@@ -167,7 +167,7 @@ WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture
   for (const auto& s : plan)
     if (s.length() >= 2.5 * s.thickness_px) by_area.emplace_back(s.thickness_px, s.length() * s.thickness_px);
   out.thickness_px = weighted_quantile(by_area, 0.6);
-  out.thin_limit_px = valley(plan, 0.6 * params.thin_ratio * out.thickness_px, 1.15 * params.thin_ratio * out.thickness_px,
+  out.thin_limit_px = valley(plan, 0.7 * params.thin_ratio * out.thickness_px, 1.1 * params.thin_ratio * out.thickness_px,
                              0.9 * params.thin_ratio * out.thickness_px);
   std::vector<InkStroke> thick;
   for (const auto& s : candidates) {
@@ -176,8 +176,9 @@ WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture
   }
   thick = without_blocks(thick, params.max_opening_share * side);
 
-  const auto pairs = merge_collinear(pair_hollow(candidates, 0.6 * params.max_wall_share * side), params.merge_angle_deg, 2);
-  if (total_length(pairs) > 0.6 * total_length(thick)) {
+  // Lines of the main class in pairs: nothing is thicker than the outline of a wall.
+  const auto pairs = merge_collinear(pair_hollow(thick, 0.6 * params.max_wall_share * side), params.merge_angle_deg, 2);
+  if (2 * total_length(pairs) > 0.4 * total_length(thick)) {
     std::vector<std::pair<double, double>> spacing;
     for (const auto& p : pairs) spacing.emplace_back(p.thickness_px, p.length());
     const double usual = weighted_quantile(spacing, 0.5);
