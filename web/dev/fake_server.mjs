@@ -151,9 +151,17 @@ setInterval(() => {
   if (dirty.length) tell(tileFrame(epoch, seq, dirty));
   change('robots', 'robot1', { x: robot.x, y: robot.y, heading: robot.heading, sigma_m: 0.12, sigma_rad: 0.03, localized: true, link: 'fresh', heard_ms: Date.now(), speed: 0.4, stopped: parts.info.floor.stopped, exploring: parts.info.floor.exploring, goal: 'g1', path: [[robot.x, robot.y], [33, 10], [35, 10], [35, 4]], note: '' });
   if (seq % 5 === 0) {
-    parts.walls = wallTable(grid.seen);
-    tell(delta('walls', parts.walls));
+    const walls = wallTable(grid.seen);
+    Object.assign(parts.walls, walls);
+    tell(delta('walls', walls));
   }
 }, 200);
 parts.walls = wallTable(grid.seen);
+// FAKE_WALLS=5000: as many walls as a large building has, to measure what a frame costs.
+const kMany = Number(process.env.FAKE_WALLS ?? 0);
+const kStates = ['confirmed', 'moved', 'unseen', 'missing', 'new'];
+for (let i = 0; i < kMany; i++) {
+  const [x, y] = [(i % 100) * 0.4, Math.floor(i / 100) * 0.4];
+  parts.walls[`n${1000 + i}`] = { a: [x, y], b: i % 2 ? [x + 0.35, y] : [x, y + 0.35], state: kStates[i % 5], confidence: 0.8, moved_m: 0 };
+}
 server.listen(port, '127.0.0.1', () => console.log(`http://127.0.0.1:${server.address().port}/`));

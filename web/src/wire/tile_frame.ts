@@ -94,8 +94,12 @@ export async function decodeTile(tile: TileHeader): Promise<Uint8Array> {
 
 /** Stops reading beyond `limit` bytes: a few bytes can claim to hold gigabytes. */
 async function inflate(bytes: Uint8Array, limit: number): Promise<Uint8Array> {
-  const stream = new Blob([bytes as BlobPart]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
-  const reader = stream.getReader();
+  const stream = new DecompressionStream('deflate-raw');
+  const writer = stream.writable.getWriter();
+  // What is wrong with the bytes shows at the reading end.
+  writer.write(bytes as BufferSource).catch(() => {});
+  writer.close().catch(() => {});
+  const reader = stream.readable.getReader();
   const out = new Uint8Array(limit);
   let length = 0;
   for (let chunk = await reader.read(); !chunk.done; chunk = await reader.read()) {

@@ -1,0 +1,88 @@
+// A tablet in somebody's hands: opens the page, changes modes, taps places of the map, and reads what the page says.
+import { createRequire } from 'node:module';
+
+const { chromium } = createRequire(new URL('../../../web/package.json', import.meta.url))('playwright-core');
+
+const kFlags = [
+  '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+  '--disable-component-update', '--disable-sync',
+];
+export const kPatientMs = 30_000;
+
+export const openBrowser = () => chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: kFlags });
+
+export class Tablet {
+  #context;
+  page;
+  errors = [];
+
+  static async open(browser, url) {
+    const tablet = new Tablet();
+    tablet.#context = await browser.newContext({ viewport: { width: 1180, height: 820 }, locale: 'en-GB' });
+    tablet.page = await tablet.#context.newPage();
+    tablet.page.setDefaultTimeout(kPatientMs);
+    tablet.page.on('pageerror', (error) => tablet.errors.push(String(error)));
+    await tablet.page.goto(url);
+    await tablet.page.waitForSelector('[data-mode=operate]');
+    await tablet.link('Live');
+    return tablet;
+  }
+
+  close() {
+    return this.#context.close();
+  }
+
+  /** Waits until the status bar says so about the link. */
+  link(word) {
+    return this.page.waitForSelector(`[data-testid=link]:has-text("${word}")`);
+  }
+
+  async mode(name) {
+    await this.page.click(`nav >> text=${name}`);
+    await this.page.waitForSelector(`[data-mode=${name.toLowerCase()}] [data-view]`);
+  }
+
+  see(text, timeout = kPatientMs) {
+    return this.page.waitForSelector(`text=${text}`, { timeout });
+  }
+
+  /** Taps a place of the canvas' own world: metres of the map, or pixels of a picture with y up. */
+  async tap([x, y]) {
+    const target = this.page.locator('[data-view]').first();
+    const box = await target.boundingBox();
+    const [cx, cy, resolution, rotation] = (await target.getAttribute('data-view')).split(' ').map(Number);
+    if (Math.abs(rotation) > 1e-9) throw new Error('the view is turned');
+    await this.page.mouse.click(box.x + box.width / 2 + (x - cx) / resolution, box.y + box.height / 2 - (y - cy) / resolution);
+  }
+
+  /** Draws a stroke through canvas points, as fractions of its width and height. */
+  async draw(points) {
+    const box = await this.page.locator('[data-view]').first().boundingBox();
+    const at = ([u, v]) => [box.x + u * box.width, box.y + v * box.height];
+    await this.page.mouse.move(...at(points[0]));
+    await this.page.mouse.down();
+    for (const point of points.slice(1)) await this.page.mouse.move(...at(point), { steps: 12 });
+    await this.page.mouse.up();
+  }
+
+  /** Marks something where the map is tapped. */
+  async mark(p, kind, label) {
+    await this.tap(p);
+    await this.page.click('[role=dialog] >> text=Mark');
+    if (label) await this.page.fill('[role=dialog] input', label);
+    await this.page.click(`[role=dialog] >> text=${kind}`);
+  }
+
+  async hold(selector) {
+    const box = await this.page.locator(selector).boundingBox();
+    await this.page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await this.page.mouse.down();
+    await this.page.waitForTimeout(1_000);
+    await this.page.mouse.up();
+  }
+
+  /** Every act is with the server: nothing waits. */
+  async settled() {
+    await this.page.waitForFunction(() => !document.querySelector('[data-testid=link]').textContent.includes('waiting'));
+  }
+}
