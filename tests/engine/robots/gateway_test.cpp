@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <optional>
 
 #include "robots/dds_domain.hpp"
 #include "robots/ros_convert.hpp"
@@ -71,20 +74,20 @@ struct Listening {
   std::unique_ptr<RobotGateway> gateway;
 };
 
-struct Twist {
+struct SentTwist {
   double speed, turn;
-  bool operator==(const Twist&) const = default;
+  bool operator==(const SentTwist&) const = default;
 };
 
-struct Robot {
-  explicit Robot(RosRobotParams params = {}) {
+struct SimulatedRobot {
+  explicit SimulatedRobot(RosRobotParams params = {}) {
     params.domain = test::ros_domain();
     auto opened = RosRobotNode::open(params, {[this](double v, double w) { velocities.put({v, w}); },
                                               [this](const Pose2& goal, const std::string&) { goals.put(goal); }});
     EXPECT_THAT(opened, test::IsOk());
     node = std::move(*opened);
   }
-  test::Mailbox<Twist> velocities;
+  test::Mailbox<SentTwist> velocities;
   test::Mailbox<Pose2> goals;
   std::unique_ptr<RosRobotNode> node;
 };
@@ -93,7 +96,7 @@ TEST(RobotGateway, DeliversEveryFieldOfAScanAsItWasSent) {
   RosRobotParams params;
   params.T_robot_laser = Pose2(0.25, -0.125, 1.5);
   Listening here;
-  Robot robot(params);
+  SimulatedRobot robot(params);
   const LaserScan sent = wire_scan(1'700'000'000'123'456'789);
   ASSERT_TRUE(here.scans.wait_poking([&] { robot.node->publish(sent); }));
   const LaserScan got = here.scans.all()[0];
@@ -114,7 +117,7 @@ TEST(RobotGateway, DeliversOdometryAndRadarSweeps) {
   params.robot = "fox";
   params.T_robot_radar = Pose2(0.5, 0, 0.25);
   Listening here;
-  Robot robot(params);
+  SimulatedRobot robot(params);
   const Odometry moved{42, "", Pose2(1, -2, 3), 0.5, -0.25};
   ASSERT_TRUE(here.odometry.wait_poking([&] {
     robot.node->publish(wire_scan(1));  // a robot is found by its scan
@@ -147,10 +150,10 @@ TEST_P(VelocityKind, IsChosenByWhatTheRobotTakes) {
   params.stamped_velocity = GetParam();
   Listening here;
   EXPECT_THAT(here.gateway->drive("robot", 1, 0), test::Fails(Errc::kNotFound));
-  Robot robot(params);
+  SimulatedRobot robot(params);
   ASSERT_TRUE(eventually([&] { return here.link("robot").takes_velocity; }));
   ASSERT_TRUE(robot.velocities.wait_poking([&] { EXPECT_THAT(here.gateway->drive("robot", 0.5, -0.75), test::IsOk()); }));
-  EXPECT_EQ(robot.velocities.all()[0], (Twist{0.5, -0.75}));
+  EXPECT_EQ(robot.velocities.all()[0], (SentTwist{0.5, -0.75}));
   EXPECT_THAT(here.gateway->drive("robot", std::nan(""), 0), test::Fails(Errc::kInvalidArgument));
 }
 
@@ -158,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(PlainOrStamped, VelocityKind, testing::Bool());
 
 TEST(RobotGateway, SendsGoals) {
   Listening here;
-  Robot robot;
+  SimulatedRobot robot;
   ASSERT_TRUE(eventually([&] { return here.link("robot").takes_goals; }));
   const Pose2 goal(3, 4, -1.25);
   ASSERT_TRUE(robot.goals.wait_poking([&] { EXPECT_THAT(here.gateway->send_goal("robot", goal), test::IsOk()); }));
@@ -171,7 +174,7 @@ TEST(RobotGateway, FindsRobotsByTheirTopicsAndKeepsThemApart) {
   RosRobotParams red, blue;
   red.robot = "red";
   blue.robot = "blue";
-  Robot first(red), second(blue);
+  SimulatedRobot first(red), second(blue);
   ASSERT_TRUE(eventually([&] {
     first.node->publish(wire_scan(1));
     second.node->publish(wire_scan(2));
@@ -184,18 +187,18 @@ TEST(RobotGateway, FindsRobotsByTheirTopicsAndKeepsThemApart) {
 TEST(RobotGateway, TakesNoCommandsForARobotThatHasGone) {
   Listening here;
   {
-    Robot robot;
+    SimulatedRobot robot;
     ASSERT_TRUE(eventually([&] { return here.link("robot").takes_velocity; }));
   }
   EXPECT_TRUE(eventually([&] { return !here.link("robot").takes_velocity; }));
   EXPECT_THAT(here.gateway->drive("robot", 0, 0), test::Fails(Errc::kNotFound));
-  Robot again;
+  SimulatedRobot again;
   EXPECT_TRUE(here.scans.wait_poking([&] { again.node->publish(wire_scan(5)); })) << "a robot may come back";
 }
 
 TEST(RobotGateway, CountsScansThatNoLaterStageShouldSee) {
   Listening here;
-  Robot robot;
+  SimulatedRobot robot;
   LaserScan bad = wire_scan(1);
   bad.angle_increment_rad = std::nan("");
   ASSERT_TRUE(eventually([&] {
@@ -223,7 +226,7 @@ struct Stranger {
 
 TEST(RobotGateway, NeverMixesTwoSourcesOfOneTopic) {
   Listening here;
-  Robot robot;
+  SimulatedRobot robot;
   ASSERT_TRUE(here.scans.wait_poking([&] { robot.node->publish(wire_scan(1)); }));
   const Stranger twin("rt/scan", sensor_qos(), &sensor_msgs_msg_dds__LaserScan__desc);
   ASSERT_TRUE(here.alarms.wait_poking([&] {
@@ -258,6 +261,35 @@ TEST(RobotGateway, ReadsATransformTreeThatIsPublishedVolatile) {
     write_scan(scans.writer.get(), wire_scan(1), "laser");
   }));
   EXPECT_THAT(here.scans.all()[0].T_robot_laser, test::IsNear(Pose2(0.2, 0.1, 0), 1e-12, 1e-12));
+}
+
+/// Writes any 48 bytes under the name of a laser scan: a twist whose type is called otherwise.
+struct Forger {
+  Forger() : type(geometry_msgs_msg_dds__Twist__desc) {
+    type.m_typename = sensor_msgs_msg_dds__LaserScan__desc.m_typename;
+    stranger.emplace("rt/scan", sensor_qos(), &type);
+  }
+  void write(const std::array<std::uint32_t, 12>& words) {
+    RosTwistMsg bytes;
+    static_assert(sizeof bytes == sizeof words);
+    std::memcpy(&bytes, words.data(), sizeof bytes);
+    EXPECT_EQ(dds_write(stranger->writer.get(), &bytes), DDS_RETCODE_OK);
+  }
+  dds_topic_descriptor_t type;
+  std::optional<Stranger> stranger;
+};
+
+TEST(RobotGateway, DropsMessagesThatAreNoScanAndGoesOn) {
+  Listening here;
+  SimulatedRobot robot;  // says where "laser" sits
+  Forger forger;
+  const std::array<std::uint32_t, 12> endless_name{1, 2, 0x7FFFFFFF}, unended_name{1, 2, 4, 0x41414141},
+      endless_ranges{1, 2, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0xFFFFFFFF}, random_words{7, 7, 6, 0x6573616C, 0x72, 9, 9, 9, 9, 9, 9, 3};
+  ASSERT_TRUE(here.scans.wait_poking([&] {
+    for (const auto& words : {endless_name, unended_name, endless_ranges, random_words}) forger.write(words);
+    robot.node->publish(wire_scan(2));
+  }));
+  for (const LaserScan& scan : here.scans.all()) EXPECT_EQ(scan.stamp, 2);
 }
 
 TEST(RobotGateway, RefusesDomainsThatDoNotExist) {
