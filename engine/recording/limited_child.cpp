@@ -67,14 +67,14 @@ struct Ended {
 
 /// Waits on the process itself where the kernel has descriptors for that, else looks again every few milliseconds.
 Ended wait_for(pid_t pid, double seconds) {
-  using Clock = std::chrono::steady_clock;
+  using Steady = std::chrono::steady_clock;
   constexpr int kLookAgainMs = 5;
-  const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
+  const auto deadline = Steady::now() + std::chrono::duration<double>(seconds);
   const int watched = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
   Ended ended;
   rusage used{};
   while (wait4(pid, &ended.status, ended.in_time ? WNOHANG : 0, &used) != pid) {
-    const double left_s = std::chrono::duration<double>(deadline - Clock::now()).count();
+    const double left_s = std::chrono::duration<double>(deadline - Steady::now()).count();
     if (left_s <= 0) {
       ended.in_time = false;
       (void)kill(pid, SIGKILL);

@@ -27,26 +27,6 @@ DdsGuid guid_of(const dds_guid_t& guid) {
   return id;
 }
 
-/// A typed reader of one topic; deleted as a whole.
-struct TopicReader {
-  DdsEntity topic;
-  DdsEntity reader;
-};
-
-/// Who is listened to on a topic.
-struct Source {
-  DdsGuid participant{};
-  Stamp last_heard = 0;
-};
-
-/// What drives a robot: exists while somebody subscribes.
-struct CommandWriter {
-  std::string topic_name;
-  bool stamped = false;
-  DdsEntity topic;
-  DdsEntity writer;
-};
-
 }  // namespace
 
 Result<Ok> GatewayParams::validate() const {
@@ -123,6 +103,26 @@ class RobotGateway::Impl {
   }
 
  private:
+  /// A typed reader of one topic; deleted as a whole.
+  struct TopicReader {
+    DdsEntity topic;
+    DdsEntity reader;
+  };
+
+  /// Who is listened to on a topic.
+  struct Source {
+    DdsGuid participant{};
+    Stamp last_heard = 0;
+  };
+
+  /// What drives a robot: exists while somebody subscribes.
+  struct CommandWriter {
+    std::string topic_name;
+    bool stamped = false;
+    DdsEntity topic;
+    DdsEntity writer;
+  };
+
   /// Touched by the gateway's thread only.
   struct Robot {
     Robot(const std::string& id, Impl& gateway)

@@ -1,6 +1,9 @@
 #include "robots/ros_robot.hpp"
 
 #include <cmath>
+#include <map>
+#include <mutex>
+#include <vector>
 
 #include "core/check.hpp"
 #include "robots/dds_domain.hpp"
@@ -24,8 +27,6 @@ Result<Ok> RosRobotParams::validate() const {
   return ParamCheck("RosRobotParams")
       .require("robot", is_robot_name(robot), "is no ROS name: letters, digits and underscores, not a digit first")
       .in_range("domain", domain, 0, 230)
-      .require("T_robot_laser", T_robot_laser.is_finite(), "is not finite")
-      .require("T_robot_radar", T_robot_radar.is_finite(), "is not finite")
       .result();
 }
 
@@ -51,7 +52,6 @@ class RosRobotNode::Impl {
     take<RosPoseMsg>(goal_, "goal_pose", &geometry_msgs_msg_dds__PoseStamped__desc, [this](const RosPoseMsg& m) {
       if (const auto goal = to_pose(m); goal && callbacks_.on_goal) callbacks_.on_goal(*goal, text_of(m.header.frame_id));
     });
-    publish_mounts();
     thread_.start();
   }
   ~Impl() { thread_.stop(); }
@@ -63,7 +63,10 @@ class RosRobotNode::Impl {
     return Ok{};
   }
 
-  void publish(const LaserScan& scan) { (void)write_scan(scan_.endpoint.get(), scan, kLaserFrame); }
+  void publish(const LaserScan& scan) {
+    tell_mount(kLaserFrame, scan.stamp, scan.T_robot_laser);
+    (void)write_scan(scan_.endpoint.get(), scan, kLaserFrame);
+  }
 
   void publish(const Odometry& odometry) {
     (void)write_odometry(odometry_.endpoint.get(), odometry, kOdomFrame, kBaseFrame);
@@ -71,7 +74,9 @@ class RosRobotNode::Impl {
   }
 
   void publish(const RadarSweep& sweep) {
-    if (radar_.endpoint) (void)write_sweep(radar_.endpoint.get(), sweep, kRadarFrame);
+    if (!radar_.endpoint) return;
+    tell_mount(kRadarFrame, sweep.stamp, sweep.T_robot_radar);
+    (void)write_sweep(radar_.endpoint.get(), sweep, kRadarFrame);
   }
 
   int listeners() const {
@@ -105,10 +110,15 @@ class RosRobotNode::Impl {
     });
   }
 
-  void publish_mounts() {
-    std::vector<NamedTransform> mounts{{0, kBaseFrame, kLaserFrame, params_.T_robot_laser}};
-    if (params_.with_radar) mounts.push_back({0, kBaseFrame, kRadarFrame, params_.T_robot_radar});
-    (void)write_transforms(fixed_.endpoint.get(), mounts);
+  /// One message holds all mounts: who comes late gets the last message only.
+  void tell_mount(const char* frame, Stamp stamp, const Pose2& T_robot_sensor) {
+    const std::lock_guard lock(mounts_mutex_);
+    const auto known = mounts_.find(frame);
+    if (known != mounts_.end() && known->second.T_parent_child.vector() == T_robot_sensor.vector()) return;
+    mounts_[frame] = {stamp, kBaseFrame, frame, T_robot_sensor};
+    std::vector<NamedTransform> all;
+    for (const auto& [name, mount] : mounts_) all.push_back(mount);
+    (void)write_transforms(fixed_.endpoint.get(), all);
   }
 
   void on_velocity(double speed_mps, double turn_rate_radps) {
@@ -121,6 +131,8 @@ class RosRobotNode::Impl {
   const std::shared_ptr<DdsDomain> domain_;
   const DdsEntity participant_;
   Topic scan_, odometry_, moving_, fixed_, radar_, velocity_, goal_;
+  std::mutex mounts_mutex_;
+  std::map<std::string, NamedTransform> mounts_;  ///< by frame, as last told
   WaitThread thread_;
 };
 

@@ -16,8 +16,6 @@ struct RosRobotParams {
   int domain = 0;
   bool stamped_velocity = false;  ///< takes TwistStamped, as Nav2 does since Kilted, instead of Twist
   bool with_radar = true;
-  Pose2 T_robot_laser;            ///< published on tf_static
-  Pose2 T_robot_radar;
   Result<Ok> validate() const;
 };
 
@@ -36,7 +34,8 @@ class RosRobotNode {
   RosRobotNode(const RosRobotNode&) = delete;
   RosRobotNode& operator=(const RosRobotNode&) = delete;
 
-  /// Thread-safe. A full or absent network costs the message, never the caller.
+  /// Thread-safe. A full or absent network costs the message, never the caller. Where a sensor sits on the robot goes out on
+  /// tf_static before its first message, and again when it changes.
   void publish(const LaserScan& scan);
   void publish(const Odometry& odometry);  ///< odom, and odom -> base_link on tf
   void publish(const RadarSweep& sweep);

@@ -55,12 +55,12 @@ void WaitThread::stop() {
 }
 
 void WaitThread::run() {
-  using Clock = std::chrono::steady_clock;
-  const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(tick_s_));
-  auto next_tick = Clock::now() + period;
+  using Steady = std::chrono::steady_clock;
+  const auto period = std::chrono::duration_cast<Steady::duration>(std::chrono::duration<double>(tick_s_));
+  auto next_tick = Steady::now() + period;
   std::array<dds_attach_t, 64> triggered{};
   for (;;) {
-    const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(next_tick - Clock::now()).count();
+    const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(next_tick - Steady::now()).count();
     const dds_return_t count =
         dds_waitset_wait(wait_set_.get(), triggered.data(), triggered.size(), std::max<dds_duration_t>(left, 0));
     const auto ready = std::min(triggered.size(), static_cast<std::size_t>(std::max(count, 0)));
@@ -69,9 +69,9 @@ void WaitThread::run() {
       // A handler may forget watches, its own among them: look each up anew and call a copy.
       if (const auto watch = watches_.find(triggered[i]); watch != watches_.end()) Handler(watch->second.handler)();
     }
-    if (Clock::now() < next_tick) continue;
+    if (Steady::now() < next_tick) continue;
     tick_();
-    next_tick = Clock::now() + period;
+    next_tick = Steady::now() + period;
   }
 }
 

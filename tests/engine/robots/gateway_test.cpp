@@ -93,11 +93,10 @@ struct SimulatedRobot {
 };
 
 TEST(RobotGateway, DeliversEveryFieldOfAScanAsItWasSent) {
-  RosRobotParams params;
-  params.T_robot_laser = Pose2(0.25, -0.125, 1.5);
   Listening here;
-  SimulatedRobot robot(params);
-  const LaserScan sent = wire_scan(1'700'000'000'123'456'789);
+  SimulatedRobot robot;
+  LaserScan sent = wire_scan(1'700'000'000'123'456'789);
+  sent.T_robot_laser = Pose2(0.25, -0.125, 1.5);
   ASSERT_TRUE(here.scans.wait_poking([&] { robot.node->publish(sent); }));
   const LaserScan got = here.scans.all()[0];
   EXPECT_EQ(got.robot, "robot");
@@ -109,13 +108,12 @@ TEST(RobotGateway, DeliversEveryFieldOfAScanAsItWasSent) {
   EXPECT_EQ(got.range_max_m, sent.range_max_m);
   EXPECT_EQ(got.ranges_m, sent.ranges_m);
   EXPECT_EQ(got.intensities, sent.intensities);
-  EXPECT_THAT(got.T_robot_laser, test::IsNear(params.T_robot_laser, 1e-12, 1e-12));
+  EXPECT_THAT(got.T_robot_laser, test::IsNear(sent.T_robot_laser, 1e-12, 1e-12));
 }
 
 TEST(RobotGateway, DeliversOdometryAndRadarSweeps) {
   RosRobotParams params;
   params.robot = "fox";
-  params.T_robot_radar = Pose2(0.5, 0, 0.25);
   Listening here;
   SimulatedRobot robot(params);
   const Odometry moved{42, "", Pose2(1, -2, 3), 0.5, -0.25};
@@ -130,7 +128,8 @@ TEST(RobotGateway, DeliversOdometryAndRadarSweeps) {
   EXPECT_EQ(odometry.speed_mps, 0.5);
   EXPECT_EQ(odometry.turn_rate_radps, -0.25);
 
-  const RadarSweep sent = wire_sweep(77);
+  RadarSweep sent = wire_sweep(77);
+  sent.T_robot_radar = Pose2(0.5, 0, 0.25);
   ASSERT_TRUE(here.sweeps.wait_poking([&] { robot.node->publish(sent); }));
   const RadarSweep sweep = here.sweeps.all()[0];
   EXPECT_EQ(sweep.power, sent.power);
@@ -139,7 +138,7 @@ TEST(RobotGateway, DeliversOdometryAndRadarSweeps) {
   EXPECT_NEAR(sweep.azimuth_increment_rad, sent.azimuth_increment_rad, 1e-6);
   EXPECT_EQ(sweep.range_min_m, sent.range_min_m);
   EXPECT_EQ(sweep.range_resolution_m, sent.range_resolution_m);
-  EXPECT_THAT(sweep.T_robot_radar, test::IsNear(params.T_robot_radar, 1e-12, 1e-12));
+  EXPECT_THAT(sweep.T_robot_radar, test::IsNear(sent.T_robot_radar, 1e-12, 1e-12));
   EXPECT_TRUE(eventually([&] { return here.link("fox").has_radar; }));
 }
 
@@ -281,7 +280,7 @@ struct Forger {
 
 TEST(RobotGateway, DropsMessagesThatAreNoScanAndGoesOn) {
   Listening here;
-  SimulatedRobot robot;  // says where "laser" sits
+  SimulatedRobot robot;
   Forger forger;
   const std::array<std::uint32_t, 12> endless_name{1, 2, 0x7FFFFFFF}, unended_name{1, 2, 4, 0x41414141},
       endless_ranges{1, 2, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0xFFFFFFFF}, random_words{7, 7, 6, 0x6573616C, 0x72, 9, 9, 9, 9, 9, 9, 3};
