@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "geometry/angle.hpp"
+
 namespace smokemap {
 namespace {
 
@@ -11,6 +13,8 @@ constexpr double kCell_m = 0.05;
 constexpr double kMargin_m = 3;
 constexpr std::size_t kMaxHits = 240;
 constexpr int kMaxSide_cells = 4000;
+constexpr double kPriorWeight = 0.02;  ///< of a squared sigma against the share of hits on walls: some 25 independent looks
+constexpr std::size_t kKeep = 5;       ///< alignments that are handed on for a closer look
 
 /// How well a point of the layout lies on a wall: 1 on a face, falling to 0.
 class WallField {
@@ -54,19 +58,24 @@ class WallField {
   cv::Mat value_;
 };
 
-/// The plan turned by -heading as seen from the robot: p_layout = robot_layout + R(-turn) (p_map - robot_map) / scale.
+/// A way to lay the plan: p_layout = robot_layout + A diag(1 / scale) A^T R(-turn) (p_map - robot_map), A = plan axes.
 struct Trial {
   Point2 robot_layout = Point2::Zero();
-  double turn = 0;   ///< of the plan in map
-  double scale = 1;  ///< of the plan's metres
+  double turn = 0;  ///< of the plan in map
+  Eigen::Vector2d scale = Eigen::Vector2d::Ones();
   double score = -1;
+
+  Eigen::Matrix2d layout_from_map(double axis_rad) const {
+    const Eigen::Matrix2d axes = Pose2(0, 0, axis_rad).rotation();
+    return axes * scale.cwiseInverse().asDiagonal() * axes.transpose() * Pose2(0, 0, -turn).rotation();
+  }
 };
 
-double score_of(const WallField& field, const std::vector<Point2>& hits_rel, const Trial& t) {
-  const double c = std::cos(-t.turn) / t.scale, s = std::sin(-t.turn) / t.scale;
+double score_of(const WallField& field, double axis_rad, const std::vector<Point2>& hits_rel, const Trial& t) {
+  const Eigen::Matrix2d m = t.layout_from_map(axis_rad);
   float sum = 0;
   for (const Point2& p : hits_rel)
-    sum += field(t.robot_layout.x() + c * p.x() - s * p.y(), t.robot_layout.y() + s * p.x() + c * p.y());
+    sum += field(t.robot_layout.x() + m(0, 0) * p.x() + m(0, 1) * p.y(), t.robot_layout.y() + m(1, 0) * p.x() + m(1, 1) * p.y());
   return static_cast<double>(sum) / static_cast<double>(hits_rel.size());
 }
 
@@ -74,57 +83,68 @@ struct Span {
   double reach = 0, step = 1;
 };
 
-/// All trials on a lattice around the centre, best few first; trials that are near a better one are left out.
-std::vector<Trial> lattice(const WallField& field, const std::vector<Point2>& hits, const Trial& center, const Span& shift,
-                           const Span& turn, const Span& scale, const AlignmentSearch* prior, std::size_t keep) {
+/// What the search needs at every step.
+struct Scene {
+  const WallField& field;
+  double axis_rad = 0;
+  const std::vector<Point2>& hits_rel;
+};
+
+/// How far apart two trials put the things around the robot.
+bool alike(const Trial& a, const Trial& b, double metres) {
+  return (a.robot_layout - b.robot_layout).norm() < metres && std::abs(wrap_angle(a.turn - b.turn)) < 0.3;
+}
+
+/// All trials on a lattice around the centre; the best few that are not alike, best first.
+std::vector<Trial> lattice(const Scene& scene, const Trial& center, const Span& shift, const Span& turn, const Span& scale,
+                           const AlignmentSearch* prior, std::size_t keep, double apart_m) {
   std::vector<Trial> all;
   const auto steps = [](const Span& s) { return static_cast<int>(std::ceil(s.reach / s.step - 1e-9)); };
-  for (int k = -steps(scale); k <= steps(scale); ++k)
-    for (int h = -steps(turn); h <= steps(turn); ++h)
-      for (int y = -steps(shift); y <= steps(shift); ++y)
-        for (int x = -steps(shift); x <= steps(shift); ++x) {
-          Trial t = center;
-          t.robot_layout += shift.step * Point2(x, y);
-          t.turn += h * turn.step;
-          t.scale *= 1 + k * scale.step;
-          t.score = score_of(field, hits, t);
-          if (prior != nullptr)
-            t.score -= 0.02 * (std::pow(shift.step * std::hypot(x, y) / prior->sigma_m, 2) +
-                               std::pow(h * turn.step / prior->sigma_rad, 2) + std::pow(std::log(t.scale) / prior->scale_sigma, 2));
-          all.push_back(t);
-        }
+  for (int u = -steps(scale); u <= steps(scale); ++u)
+    for (int v = -steps(scale); v <= steps(scale); ++v)
+      for (int h = -steps(turn); h <= steps(turn); ++h)
+        for (int y = -steps(shift); y <= steps(shift); ++y)
+          for (int x = -steps(shift); x <= steps(shift); ++x) {
+            Trial t = center;
+            t.robot_layout += shift.step * Point2(x, y);
+            t.turn += h * turn.step;
+            t.scale = t.scale.cwiseProduct(Eigen::Vector2d(1 + u * scale.step, 1 + v * scale.step));
+            t.score = score_of(scene.field, scene.axis_rad, scene.hits_rel, t);
+            if (prior != nullptr)
+              t.score -= kPriorWeight * (std::pow(shift.step * std::hypot(x, y) / prior->sigma_m, 2) +
+                                         std::pow(h * turn.step / prior->sigma_rad, 2) +
+                                         t.scale.array().log().matrix().squaredNorm() / std::pow(prior->scale_sigma, 2));
+            all.push_back(t);
+          }
   std::stable_sort(all.begin(), all.end(), [](const Trial& a, const Trial& b) { return a.score > b.score; });
   std::vector<Trial> best;
   for (const Trial& t : all) {
     if (best.size() >= keep) break;
-    const bool near = std::any_of(best.begin(), best.end(), [&](const Trial& b) {
-      return (b.robot_layout - t.robot_layout).norm() < 0.8 && std::abs(wrap_angle(b.turn - t.turn)) < 0.3;
-    });
-    if (!near) best.push_back(t);
+    if (std::none_of(best.begin(), best.end(), [&](const Trial& b) { return alike(b, t, apart_m); })) best.push_back(t);
   }
   return best;
 }
 
-Trial refine(const WallField& field, const std::vector<Point2>& hits, Trial t) {
+Trial refine(const Scene& scene, Trial t) {
   for (const double step : {0.1, 0.04}) {
-    Trial best = lattice(field, hits, t, {2 * step, step}, {0.3 * step, 0.15 * step}, {0.6 * step, 0.3 * step}, nullptr, 1).front();
+    const Trial best = lattice(scene, t, {step, step}, {0.3 * step, 0.15 * step}, {0.3 * step, 0.3 * step}, nullptr, 1, 1).front();
     if (best.score > t.score) t = best;
   }
   return t;
 }
 
-/// Everywhere on a half-metre lattice, every 5 degrees; the best dozen are refined.
-std::vector<Trial> search_everywhere(const WallField& coarse, const WallField& fine, const std::vector<Point2>& hits) {
+/// Everywhere on a lattice of half a metre, every 5 degrees; the best few dozen are refined.
+std::vector<Trial> search_everywhere(const Scene& coarse, const Scene& fine) {
   std::vector<Trial> all;
   std::vector<Point2> few;
-  for (std::size_t i = 0; i < hits.size(); i += 3) few.push_back(hits[i]);
-  const Point2 size = coarse.high() - coarse.low();
-  const double step = std::max(0.4, size.maxCoeff() / 100);
-  for (double y = coarse.low().y(); y < coarse.high().y(); y += step)
-    for (double x = coarse.low().x(); x < coarse.high().x(); x += step)
+  for (std::size_t i = 0; i < coarse.hits_rel.size(); i += 3) few.push_back(coarse.hits_rel[i]);
+  const Point2 low = coarse.field.low(), high = coarse.field.high();
+  const double step = std::max(0.4, (high - low).maxCoeff() / 100);
+  for (double y = low.y(); y < high.y(); y += step)
+    for (double x = low.x(); x < high.x(); x += step)
       for (int h = 0; h < 72; ++h) {
-        Trial t{{x, y}, h * kPi / 36, 1, -1};
-        t.score = score_of(coarse, few, t);
+        Trial t{{x, y}, h * kPi / 36, Eigen::Vector2d::Ones(), -1};
+        t.score = score_of(coarse.field, coarse.axis_rad, few, t);
         all.push_back(t);
       }
   const std::size_t keep = std::min<std::size_t>(all.size(), 60);
@@ -133,27 +153,51 @@ std::vector<Trial> search_everywhere(const WallField& coarse, const WallField& f
   all.resize(keep);
   std::vector<Trial> refined;
   for (Trial t : all) {
-    t = lattice(coarse, hits, t, {0.4, 0.2}, {0.08, 0.04}, {0.15, 0.05}, nullptr, 1).front();
-    t.score = score_of(fine, hits, t);
-    refined.push_back(refine(fine, hits, t));
+    t = lattice(coarse, t, {0.4, 0.2}, {0.08, 0.04}, {0.1, 0.1}, nullptr, 1, 1).front();
+    t.score = score_of(fine.field, fine.axis_rad, fine.hits_rel, t);
+    refined.push_back(refine(fine, t));
   }
-  std::stable_sort(refined.begin(), refined.end(), [](const Trial& a, const Trial& b) { return a.score > b.score; });
   return refined;
+}
+
+/// Best first, those that ended in the same place once.
+std::vector<Trial> distinct(std::vector<Trial> trials, double apart_m, std::size_t keep) {
+  std::stable_sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) { return a.score > b.score; });
+  std::vector<Trial> out;
+  for (const Trial& t : trials)
+    if (out.size() < keep && std::none_of(out.begin(), out.end(), [&](const Trial& o) { return alike(o, t, apart_m); })) out.push_back(t);
+  return out;
 }
 
 }  // namespace
 
-std::vector<Point2> first_hits(const std::vector<NodeView>& views, const GraphState& state, double way_m) {
+Point2 PlanPlacement::operator*(const Point2& p_layout) const {
+  const Eigen::Matrix2d axes = Pose2(0, 0, axis_rad).rotation();
+  return shift_map + Pose2(0, 0, turn_rad).rotation() * axes * scale.asDiagonal() * axes.transpose() * p_layout;
+}
+
+Point2 PlanPlacement::inverse(const Point2& p_map) const {
+  const Eigen::Matrix2d axes = Pose2(0, 0, axis_rad).rotation();
+  return axes * scale.cwiseInverse().asDiagonal() * axes.transpose() * Pose2(0, 0, -turn_rad).rotation() * (p_map - shift_map);
+}
+
+PlanPlacement PlanPlacement::from(const Similarity2& s, double axis_rad) {
+  return {s.T_a_b.heading(), Eigen::Vector2d::Constant(s.scale), axis_rad, s.T_a_b.translation()};
+}
+
+std::vector<Point2> first_hits(const std::vector<NodeView>& views, const GraphState& state, double way_m, double reach_m) {
   std::vector<Point2> all;
   double way = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (i > 0) way += (state.pose(i).translation() - state.pose(i - 1).translation()).norm();
     if (way > way_m) break;
     const Pose2 pose = state.pose(i);
-    // Pieces rather than single hits: furniture and people have few long ones.
+    // Pieces rather than single hits: people and small things have none.
     for (const ScanPiece& p : views[i].pieces)
-      for (double s = 0.05; s < p.segment.length(); s += 0.15)
-        all.push_back(pose * (p.segment.a + s * p.segment.direction()));
+      for (double s = 0.05; s < p.segment.length(); s += 0.15) {
+        const Point2 q = p.segment.a + s * p.segment.direction();
+        if (q.norm() < reach_m) all.push_back(pose * q);
+      }
   }
   std::vector<Point2> thinned;
   const std::size_t step = all.size() / kMaxHits + 1;
@@ -161,43 +205,42 @@ std::vector<Point2> first_hits(const std::vector<NodeView>& views, const GraphSt
   return thinned;
 }
 
-Result<PlanAlignment> align_plan(const PlanModel& plan, const std::vector<Point2>& hits_map, const Point2& robot_map,
-                             const AlignmentSearch& search) {
+Result<std::vector<PlanAlignment>> align_plan(const PlanModel& plan, const std::vector<Point2>& hits_map, const Point2& robot_map,
+                                          const AlignmentSearch& search) {
   if (hits_map.size() < 20) return fail(Errc::kDegenerate, "too little seen to align the plan");
-  std::vector<Point2> hits;
-  for (const Point2& p : hits_map) hits.push_back(p - robot_map);
-  const WallField coarse(plan, 0.35), fine(plan, 0.15);
-  Trial best;
-  PlanAlignment out;
-  out.margin = 1;
+  std::vector<Point2> hits_rel;
+  for (const Point2& p : hits_map) hits_rel.push_back(p - robot_map);
+  const WallField coarse_field(plan, 0.35), fine_field(plan, 0.15);
+  const Scene coarse{coarse_field, plan.axis_rad, hits_rel}, fine{fine_field, plan.axis_rad, hits_rel};
+  std::vector<Trial> trials;
   if (search.guess) {
-    const Trial start{search.guess->inverse() * robot_map, search.guess->T_a_b.heading(), search.guess->scale, -1};
+    const Trial start{search.guess->inverse() * robot_map, search.guess->T_a_b.heading(),
+                      Eigen::Vector2d::Constant(search.guess->scale), -1};
     const double shift = std::clamp(2.5 * search.sigma_m, 0.2, 2.5), turn = std::clamp(2.5 * search.sigma_rad, 0.05, 0.6);
-    best = lattice(coarse, hits, start, {shift, std::max(0.15, shift / 8)}, {turn, std::max(0.03, turn / 8)},
-                   {2 * search.scale_sigma, 0.5 * search.scale_sigma}, &search, 1)
-               .front();
-    best.score = score_of(fine, hits, best);
-    best = refine(fine, hits, best);
+    for (Trial t : lattice(coarse, start, {shift, std::max(0.15, shift / 8)}, {turn, std::max(0.03, turn / 6)},
+                           {2 * search.scale_sigma, search.scale_sigma}, &search, kKeep, 0.3)) {
+      t.score = score_of(fine_field, plan.axis_rad, hits_rel, t);
+      trials.push_back(refine(fine, t));
+    }
+    trials = distinct(trials, 0.2, kKeep);
   } else {
-    const auto all = search_everywhere(coarse, fine, hits);
-    best = all.front();
-    for (const Trial& t : all)
-      if ((t.robot_layout - best.robot_layout).norm() > 1.0 || std::abs(wrap_angle(t.turn - best.turn)) > 0.4) {
-        out.margin = (best.score - t.score) / std::max(1e-6, best.score);
-        break;
-      }
+    trials = distinct(search_everywhere(coarse, fine), 1.0, kKeep);
   }
-  Similarity2& s = out.map_from_layout;
-  s.scale = best.scale;
-  const Pose2 turn(0, 0, best.turn);
-  s.T_a_b = Pose2(robot_map - best.scale * (turn * best.robot_layout), best.turn);
-  int near = 0;
-  const double exp_20cm = std::exp(-0.5 * std::pow(0.2 / 0.15, 2));
-  for (const Point2& p : hits_map) {
-    const Point2 q = s.inverse() * p;
-    near += fine(q.x(), q.y()) > exp_20cm;
+  std::vector<PlanAlignment> out;
+  for (const Trial& t : trials) {
+    PlanAlignment a;
+    a.placement = {t.turn, t.scale, plan.axis_rad, Point2::Zero()};
+    a.placement.shift_map = robot_map - a.placement * t.robot_layout;
+    if (!search.guess && trials.size() > 1)
+      a.margin = (t.score - (&t == &trials.front() ? trials[1] : trials.front()).score) / std::max(1e-6, t.score);
+    int near = 0;
+    for (const Point2& p : hits_map) {
+      const Point2 q = a.placement.inverse(p);
+      near += fine_field(q.x(), q.y()) > std::exp(-0.5 * std::pow(0.2 / 0.15, 2));
+    }
+    a.explained = near / static_cast<double>(hits_map.size());
+    out.push_back(a);
   }
-  out.explained = near / static_cast<double>(hits_map.size());
   return out;
 }
 

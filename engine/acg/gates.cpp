@@ -25,6 +25,18 @@ double apart_m(const PlanModel& plan, const PlanEdge& wall, const PlanEdge& know
 
 }  // namespace
 
+double plan_tension(const PlanModel& plan, const GraphState& state, const AcgParams& params) {
+  double sum = 0;
+  const double corners = std::sqrt(2.0) * params.sigma_corner_draw_m;
+  for (const PlanEdge& wall : plan.walls) {
+    const Segment2 now = state.segment(wall);
+    const Point2 d = Pose2(0, 0, -state.turn - wall.heading_rad) * Point2(now.b - now.a);
+    sum += std::pow((d.x() - wall.length_m) / std::hypot(params.sigma_wall_log_length * wall.length_m, corners), 2) +
+           std::pow(d.y() / std::hypot(0.01 * wall.length_m, corners), 2);
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(1, plan.walls.size()));
+}
+
 std::vector<bool> tense_walls(const PlanModel& plan, const GraphState& state, const AcgParams& params) {
   std::vector<bool> tense;
   for (const PlanEdge& wall : plan.walls) {

@@ -17,6 +17,9 @@ std::vector<double> wall_gates_m(const PlanModel& plan, const GraphState& state,
 /// Walls that their links hold in a place that the plan finds hard to believe: turned by more than three sigma.
 std::vector<bool> tense_walls(const PlanModel& plan, const GraphState& state, const AcgParams& params);
 
+/// Mean over walls of how many squared sigmas their length and direction differ from the drawing.
+double plan_tension(const PlanModel& plan, const GraphState& state, const AcgParams& params);
+
 /// Evidence over which length lets a wall move by itself.
 bool mature(const PlanEdge& wall, double linked_m, const AcgParams& params);
 
