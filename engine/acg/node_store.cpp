@@ -1,5 +1,6 @@
 #include "acg/node_store.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
@@ -20,9 +21,11 @@ void NodeStore::take(const PoseGraph& graph, GraphState& state) {
     views_.clear();
     state.poses.clear();
   }
-  const std::size_t known = views_.size();
+  for (std::size_t i = views_.size(); i < graph.nodes.size(); ++i) views_.push_back(view_of(graph.nodes[i], params_));
+  // An update that failed may have left nodes here that the state does not know yet.
+  const std::size_t known = std::min(state.poses.size(), graph.nodes.size());
+  state.poses.resize(known);
   for (std::size_t i = known; i < graph.nodes.size(); ++i) {
-    views_.push_back(view_of(graph.nodes[i], params_));
     Pose2 pose = graph.nodes[i].T_map_robot;
     if (known > 0) pose = state.pose(known - 1) * (graph.nodes[known - 1].T_map_robot.inverse() * pose);
     state.poses.push_back(block(pose));

@@ -3,6 +3,8 @@
 #include <ceres/ceres.h>
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "acg/residuals/anchor_cost.hpp"
@@ -25,10 +27,44 @@ constexpr double kAcrossShare = 0.01;    ///< of its length a wall may stand off
 /// A weight that does not depend on the residual: the robust scheme sets it between solves.
 ceres::LossFunction* weighted(double weight) { return new ceres::ScaledLoss(nullptr, weight, ceres::TAKE_OWNERSHIP); }
 
+/// The state in one piece of memory. Ceres orders blocks by address: in one piece the order, and with it every last bit of
+/// the answer, is the same in each run.
+class ParameterBlocks {
+ public:
+  explicit ParameterBlocks(const GraphState& state)
+      : corners_at_(3 * state.poses.size()), plan_at_(corners_at_ + 2 * state.corners.size()),
+        lines_at_{plan_at_ + 2, plan_at_ + 2 + state.lines[0].size()} {
+    for (const auto& pose : state.poses) values_.insert(values_.end(), pose.begin(), pose.end());
+    for (const auto& corner : state.corners) values_.insert(values_.end(), corner.begin(), corner.end());
+    values_.push_back(state.turn);
+    values_.push_back(state.log_scale);
+    for (const auto& lines : state.lines) values_.insert(values_.end(), lines.begin(), lines.end());
+  }
+  double* pose(std::size_t i) { return &values_[3 * i]; }
+  double* corner(std::size_t i) { return &values_[corners_at_ + 2 * i]; }
+  double* turn() { return &values_[plan_at_]; }
+  double* log_scale() { return &values_[plan_at_ + 1]; }
+  double* line(std::size_t axis, std::size_t i) { return &values_[lines_at_[axis] + i]; }
+
+  void write_to(GraphState& state) {
+    for (std::size_t i = 0; i < state.poses.size(); ++i) std::copy_n(pose(i), 3, state.poses[i].begin());
+    for (std::size_t i = 0; i < state.corners.size(); ++i) std::copy_n(corner(i), 2, state.corners[i].begin());
+    state.turn = *turn();
+    state.log_scale = *log_scale();
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      for (std::size_t i = 0; i < state.lines[axis].size(); ++i) state.lines[axis][i] = *line(axis, i);
+  }
+
+ private:
+  std::vector<double> values_;
+  std::size_t corners_at_, plan_at_;
+  std::array<std::size_t, 2> lines_at_;
+};
+
 class ProblemBuilder {
  public:
-  ProblemBuilder(const SolveInput& input, const AcgParams& params, GraphState& state)
-      : in_(input), params_(params), state_(state) {}
+  ProblemBuilder(const SolveInput& input, const AcgParams& params, const GraphState& state, ParameterBlocks& blocks)
+      : in_(input), params_(params), state_(state), blocks_(blocks) {}
 
   void build(ceres::Problem& problem) {
     add_poses(problem);
@@ -40,8 +76,8 @@ class ProblemBuilder {
   }
 
  private:
-  double* pose(std::size_t i) { return state_.poses[i].data(); }
-  double* corner(int i) { return state_.corners[static_cast<std::size_t>(i)].data(); }
+  double* pose(std::size_t i) { return blocks_.pose(i); }
+  double* corner(int i) { return blocks_.corner(static_cast<std::size_t>(i)); }
 
   void add_poses(ceres::Problem& problem) {
     for (std::size_t i = 0; i < state_.poses.size(); ++i) {
@@ -61,12 +97,12 @@ class ProblemBuilder {
     problem.AddResidualBlock(
         WallShapeCost::Create(edge.length_m, edge.heading_rad, std::hypot(along_share * edge.length_m, corners),
                               std::hypot(kAcrossShare * edge.length_m, corners)),
-        weighted(firmness), corner(edge.corner_a), corner(edge.corner_b), &state_.turn, &state_.log_scale);
+        weighted(firmness), corner(edge.corner_a), corner(edge.corner_b), blocks_.turn(), blocks_.log_scale());
   }
 
   void add_plan(ceres::Problem& problem) {
-    problem.AddResidualBlock(PriorValueCost::Create(0, in_.plan->scale_sigma), nullptr, &state_.log_scale);
-    problem.AddParameterBlock(&state_.turn, 1);
+    problem.AddResidualBlock(PriorValueCost::Create(0, in_.plan->scale_sigma), nullptr, blocks_.log_scale());
+    problem.AddParameterBlock(blocks_.turn(), 1);
     for (std::size_t w = 0; w < in_.plan->walls.size(); ++w)
       add_shape(problem, in_.plan->walls[w], params_.sigma_wall_log_length, in_.wall_firmness[w]);
     for (const PlanEdge& g : in_.plan->gaps) add_shape(problem, g, 1.5 * params_.sigma_wall_log_length, 1);
@@ -75,23 +111,23 @@ class ProblemBuilder {
   void add_lines(ceres::Problem& problem, int axis) {
     const auto& drawn = in_.plan->lines[static_cast<std::size_t>(axis)];
     const auto& line_of = in_.plan->line_of_corner[static_cast<std::size_t>(axis)];
-    auto& lines = state_.lines[static_cast<std::size_t>(axis)];
+    const auto line = [&](std::size_t i) { return blocks_.line(static_cast<std::size_t>(axis), i); };
     const double heading = in_.plan->axis_rad + axis * kPi / 2;
     for (std::size_t c = 0; c < line_of.size(); ++c)
       problem.AddResidualBlock(DrawnLineCost::Create(heading, params_.sigma_corner_draw_m), new ceres::CauchyLoss(2.0),
-                               corner(static_cast<int>(c)), &state_.turn, &lines[static_cast<std::size_t>(line_of[c])]);
+                               corner(static_cast<int>(c)), blocks_.turn(), line(static_cast<std::size_t>(line_of[c])));
     const double sigma = params_.sigma_wall_log_length;
     for (std::size_t k = 0; k + 1 < drawn.size(); ++k) {
       const double width = drawn[k + 1] - drawn[k];
       if (k == 0) {
-        problem.AddResidualBlock(StripStretchCost::Create(width, sigma), nullptr, &lines[0], &lines[1], &state_.log_scale);
+        problem.AddResidualBlock(StripStretchCost::Create(width, sigma), nullptr, line(0), line(1), blocks_.log_scale());
         continue;
       }
       const double before = drawn[k] - drawn[k - 1], apart = 0.5 * (width + before);
       const double correlation = std::exp(-apart / (0.6 * params_.stretch_length_m));
       problem.AddResidualBlock(
           NeighbourStretchCost::Create(before, width, correlation, sigma * std::sqrt(1 - correlation * correlation)),
-          nullptr, &lines[k - 1], &lines[k], &lines[k + 1], &state_.log_scale);
+          nullptr, line(k - 1), line(k), line(k + 1), blocks_.log_scale());
     }
   }
 
@@ -114,7 +150,8 @@ class ProblemBuilder {
 
   const SolveInput& in_;
   const AcgParams& params_;
-  GraphState& state_;
+  const GraphState& state_;
+  ParameterBlocks& blocks_;
 };
 
 class StopWhenAsked final : public ceres::IterationCallback {
@@ -145,9 +182,9 @@ Eigen::SparseMatrix<double> normal_matrix(const ceres::CRSMatrix& jacobian) {
 
 Result<Ok> solve(const SolveInput& input, const AcgParams& params, const Progress& progress, GraphState& state) {
   if (progress.cancelled()) return fail(Errc::kCancelled, "stopped while merging plan and map");
-  GraphState work = state;
+  ParameterBlocks blocks(state);
   ceres::Problem problem;
-  ProblemBuilder(input, params, work).build(problem);
+  ProblemBuilder(input, params, state, blocks).build(problem);
   StopWhenAsked stop(progress);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
@@ -161,27 +198,26 @@ Result<Ok> solve(const SolveInput& input, const AcgParams& params, const Progres
   if (progress.cancelled()) return fail(Errc::kCancelled, "stopped while merging plan and map");
   if (!summary.IsSolutionUsable())
     return fail(Errc::kNotConverged, "merging plan and map gave no usable answer: " + summary.message);
-  state = std::move(work);
+  blocks.write_to(state);
   return Ok{};
 }
 
-Result<std::vector<double>> corner_sigmas_m(const SolveInput& input, const AcgParams& params, GraphState& state) {
+Result<std::vector<double>> corner_sigmas_m(const SolveInput& input, const AcgParams& params, const GraphState& state) {
   std::vector<double> sigmas(state.corners.size(), 0);
   if (input.plan == nullptr) return sigmas;
+  ParameterBlocks memory(state);
   ceres::Problem problem;
-  ProblemBuilder(input, params, state).build(problem);
+  ProblemBuilder(input, params, state, memory).build(problem);
   ceres::Problem::EvaluateOptions what;
-  std::vector<double*> blocks;
+  std::vector<double*> blocks, free_blocks;
   problem.GetParameterBlocks(&blocks);
-  std::vector<double*> free_blocks;
   std::vector<int> first_column(state.corners.size(), -1);
   int column = 0;
   for (double* block : blocks) {
     if (problem.IsParameterBlockConstant(block)) continue;
     free_blocks.push_back(block);
-    const auto* begin = reinterpret_cast<const std::array<double, 2>*>(block);
-    if (begin >= state.corners.data() && begin < state.corners.data() + state.corners.size())
-      first_column[static_cast<std::size_t>(begin - state.corners.data())] = column;
+    if (block >= memory.corner(0) && block < memory.turn())
+      first_column[static_cast<std::size_t>(block - memory.corner(0)) / 2] = column;
     column += problem.ParameterBlockSize(block);
   }
   what.parameter_blocks = free_blocks;

@@ -29,6 +29,6 @@ Result<Ok> solve(const SolveInput& input, const AcgParams& params, const Progres
 /// One standard deviation per coordinate of every corner, from the inverse of the normal equations at the solution, plus what
 /// the model leaves out (wall thickness, a sensor's own bias).
 /// Cost: one sparse factorisation and two solves a corner.
-Result<std::vector<double>> corner_sigmas_m(const SolveInput& input, const AcgParams& params, GraphState& state);
+Result<std::vector<double>> corner_sigmas_m(const SolveInput& input, const AcgParams& params, const GraphState& state);
 
 }  // namespace smokemap
