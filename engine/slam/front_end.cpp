@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kMapHalfSize_m = 40.0;
 constexpr int kRebuildEveryNodes = 10;
-constexpr double kWeakScore = 0.2;
 
 Eigen::Matrix3d spread(const PredictedStep& step) {
   return Eigen::Vector3d(step.sigma_m * step.sigma_m, step.sigma_m * step.sigma_m, step.sigma_rad * step.sigma_rad).asDiagonal();
@@ -33,21 +32,34 @@ FrontEnd::Tracked FrontEnd::track(const ScanPoints& points, const PredictedStep&
     return answer(ScanFate::kTooFewPoints, 0);
   }
   const Alignment found = match(points.surface, predicted, step);
-  const FrontEndParams& limits = params_.front_end;
-  if (found.score < limits.least_score) {
-    const Pose2 moved = predicted.inverse() * found.T_map_robot;
-    const bool plausible = moved.translation().norm() < 3 * step.sigma_m && std::abs(moved.heading()) < 3 * step.sigma_rad;
-    T_track_robot_ = found.score >= kWeakScore && plausible ? found.T_map_robot : predicted;
-    if (++poor_in_a_row_ >= limits.lost_after_scans || (far_from_last_node() && step.by_odometry))
-      return begin_piece(points, ScanFate::kNewPiece);
-    return answer(ScanFate::kPoorMatch, found.score);
-  }
+  if (!believable(found, predicted, step)) return go_on_blindly(points, predicted, step, found.score);
   poor_in_a_row_ = 0;
   T_track_robot_ = found.T_map_robot;
   blind_covariance_ = match_covariance(found);
   Tracked tracked = answer(ScanFate::kMatched, found.score);
   if (far_from_last_node()) {
     tracked.node = true;
+    keep(points);
+  }
+  return tracked;
+}
+
+/// A good score is proof; a fair one, as when most of the scan looks into a new room, is believed where the prediction agrees.
+bool FrontEnd::believable(const Alignment& found, const Pose2& predicted, const PredictedStep& step) const {
+  if (found.score >= params_.front_end.least_score) return true;
+  const Pose2 moved = predicted.inverse() * found.T_map_robot;
+  return found.score >= params_.front_end.fair_score && moved.translation().norm() < 3 * step.sigma_m &&
+         std::abs(moved.heading()) < 3 * step.sigma_rad;
+}
+
+/// The prediction stands. Odometry carries nodes over a while of this; after that the old map is given up.
+FrontEnd::Tracked FrontEnd::go_on_blindly(const ScanPoints& points, const Pose2& predicted, const PredictedStep& step, double score) {
+  T_track_robot_ = predicted;
+  if (++poor_in_a_row_ >= params_.front_end.lost_after_scans) return begin_piece(points, ScanFate::kNewPiece);
+  Tracked tracked = answer(ScanFate::kPoorMatch, score);
+  if (step.by_odometry && far_from_last_node()) {
+    tracked.node = true;
+    tracked.kind = EdgeKind::kOdometry;
     keep(points);
   }
   return tracked;

@@ -14,7 +14,7 @@ enum class ScanFate : std::uint8_t {
   kMatched,        ///< pose from the match
   kFirst,          ///< the first scan defines the map
   kTooFewPoints,   ///< nearly all beams without information (smoke, open space): pose from the prediction
-  kPoorMatch,      ///< did not fit the map: pose from the prediction, nothing written to the map
+  kPoorMatch,      ///< did not fit the map: pose from the prediction
   kNewPiece,       ///< nothing had fitted for a while: a new piece of map begins here, tied by the prediction only
   kDuplicate,      ///< same stamp and same ranges as the scan before: ignored
 };
@@ -44,6 +44,8 @@ class FrontEnd {
     std::vector<SurfacePoint> surface;
   };
   Alignment match(const std::vector<SurfacePoint>& surface, const Pose2& predicted, const PredictedStep& step);
+  bool believable(const Alignment& found, const Pose2& predicted, const PredictedStep& step) const;
+  Tracked go_on_blindly(const ScanPoints& points, const Pose2& predicted, const PredictedStep& step, double score);
   bool search_needed(const PredictedStep& step, double score) const;
   Alignment search(const std::vector<SurfacePoint>& surface, const PosePrior& prior, const PredictedStep& step, const Alignment& so_far);
   bool far_from_last_node() const;

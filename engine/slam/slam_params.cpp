@@ -10,6 +10,7 @@ Result<Ok> PointParams::validate() const {
       .in_range("spacing_m", spacing_m, 0.005, 1)
       .in_range("most_points", most_points, 20, 5000)
       .in_range("line_radius_m", line_radius_m, 0.02, 2)
+      .in_range("line_steps", line_steps, 0, 50)
       .positive("line_rms_m", line_rms_m)
       .in_range("least_points", least_points, 3, most_points)
       .result();
@@ -37,6 +38,7 @@ Result<Ok> FrontEndParams::validate() const {
       .positive("map_reach_m", map_reach_m)
       .in_range("good_score", good_score, 0, 1)
       .in_range("least_score", least_score, 0, good_score)
+      .in_range("fair_score", fair_score, 0, least_score)
       .positive("search_m", search_m)
       .in_range("search_rad", search_rad, 0, kPi)
       .positive("sparse_step_m", sparse_step_m)

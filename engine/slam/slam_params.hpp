@@ -8,11 +8,12 @@ namespace smokemap {
 
 /// From ranges to the points that are matched.
 struct PointParams {
-  double farthest_m = 30.0;       ///< hits beyond are drawn but not matched
+  double farthest_m = 20.0;       ///< hits beyond are drawn but not matched
   double spacing_m = 0.04;        ///< thinned to at least this distance along the scan ...
   int most_points = 180;          ///< ... and wider until at most this many are left
   double line_radius_m = 0.20;    ///< neighbours in which a surface direction is estimated
-  double line_rms_m = 0.04;       ///< rougher neighbourhoods have no direction
+  double line_steps = 3.2;        ///< and at least this many beams to each side
+  double line_rms_m = 0.06;       ///< rougher neighbourhoods have no direction
   int least_points = 20;          ///< fewer: the scan says nothing
   Result<Ok> validate() const;
 };
@@ -22,7 +23,7 @@ struct AlignParams {
   int iterations = 12;
   double gate_m = 0.40;           ///< a point this far across from its surface still counts in the first round ...
   double last_gate_m = 0.12;      ///< ... and this far in the last
-  double reach_m = 0.35;          ///< a surface is looked for this far along it: points of far walls are sparse
+  double reach_m = 0.60;          ///< a surface is looked for this far along it: points of far walls are sparse
   double sigma_point_m = 0.025;   ///< of a point against its surface
   double normals_within = 0.70;   ///< least cosine between the directions of point and surface
   double stop_m = 2e-4;           ///< a smaller step ends the search
@@ -38,7 +39,8 @@ struct FrontEndParams {
   int map_nodes = 60;               ///< nodes that make the local map
   double map_reach_m = 8.0;         ///< and how far from the robot they may stand
   double good_score = 0.55;         ///< less: search instead of refining
-  double least_score = 0.35;        ///< less: no match
+  double least_score = 0.35;        ///< less: a match only where it agrees with the prediction
+  double fair_score = 0.15;         ///< less: no match
   double search_m = 0.30;           ///< half window of the search, more for longer steps
   double search_rad = 0.35;
   double sparse_step_m = 0.50;      ///< longer steps between scans are always searched
@@ -72,9 +74,9 @@ struct LoopParams {
 /// Solving and polishing the graph.
 struct GraphParams {
   double loop_kernel = 3.0;         ///< Cauchy width, in standard deviations
-  double pair_reach_m = 4.0;        ///< nodes farther apart are not matched with each other
+  double pair_reach_m = 8.0;        ///< nodes farther apart are not matched with each other
   int pairs_per_node = 10;
-  double least_pair_score = 0.50;
+  double least_pair_score = 0.40;
   double pair_information = 0.10;   ///< share of the information of a pair's points that is independent
   int polish_rounds = 3;
   Result<Ok> validate() const;

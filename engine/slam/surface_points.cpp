@@ -59,7 +59,7 @@ std::vector<std::size_t> select(const std::vector<Point2>& hits, const Point2& p
 SurfacePoint surface_at(const Beams& beams, std::size_t i, const Point2& p_sensor, const PointParams& params) {
   SurfacePoint point;
   point.p = beams.hits[i];
-  const double radius = std::max(params.line_radius_m, 2.2 * beams.step_m[i]);
+  const double radius = std::max(params.line_radius_m, params.line_steps * beams.step_m[i]);
   PrincipalLine line;
   line.add(point.p);
   for (std::size_t j = i + 1; j < beams.hits.size() && (beams.hits[j] - point.p).norm() <= radius; ++j)
