@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kMapHalfSize_m = 40.0;
 constexpr int kRebuildEveryNodes = 10;
+constexpr double kScoreMemory = 0.1;  ///< share of the newest score in the usual one
+constexpr double kUsualShare = 0.6;
 
 Eigen::Matrix3d spread(const PredictedStep& step) {
   return Eigen::Vector3d(step.sigma_m * step.sigma_m, step.sigma_m * step.sigma_m, step.sigma_rad * step.sigma_rad).asDiagonal();
@@ -34,6 +36,7 @@ FrontEnd::Tracked FrontEnd::track(const ScanPoints& points, const PredictedStep&
   const Alignment found = match(points.surface, predicted, step);
   if (!believable(found, predicted, step)) return go_on_blindly(points, predicted, step, found.score);
   poor_in_a_row_ = 0;
+  usual_score_ += kScoreMemory * (found.score - usual_score_);
   T_track_robot_ = found.T_map_robot;
   blind_covariance_ = match_covariance(found);
   Tracked tracked = answer(ScanFate::kMatched, found.score);
@@ -44,9 +47,11 @@ FrontEnd::Tracked FrontEnd::track(const ScanPoints& points, const PredictedStep&
   return tracked;
 }
 
-/// A good score is proof; a fair one, as when most of the scan looks into a new room, is believed where the prediction agrees.
+/// A score as good as usual is proof; a fair one, as when most of the scan looks into a new room, is believed where the
+/// prediction agrees.
 bool FrontEnd::believable(const Alignment& found, const Pose2& predicted, const PredictedStep& step) const {
-  if (found.score >= params_.front_end.least_score) return true;
+  if (found.score >= std::max(params_.front_end.least_score, kUsualShare * usual_score_)) return true;
+  if (!step.by_odometry) return false;  // agreeing with a guess would mean nothing
   const Pose2 moved = predicted.inverse() * found.T_map_robot;
   return found.score >= params_.front_end.fair_score && moved.translation().norm() < 3 * step.sigma_m &&
          std::abs(moved.heading()) < 3 * step.sigma_rad;

@@ -62,6 +62,7 @@ class FrontEnd {
   Pose2 T_track_robot_;
   Eigen::Matrix3d blind_covariance_ = Eigen::Matrix3d::Zero();  ///< of predicted steps since the last match, track frame
   int poor_in_a_row_ = 0;
+  double usual_score_ = 0;
   bool started_ = false;
 };
 

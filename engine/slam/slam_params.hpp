@@ -26,8 +26,8 @@ struct AlignParams {
   double reach_m = 0.60;          ///< a surface is looked for this far along it: points of far walls are sparse
   double sigma_point_m = 0.025;   ///< of a point against its surface
   double normals_within = 0.70;   ///< least cosine between the directions of point and surface
-  double stop_m = 2e-4;           ///< a smaller step ends the search
-  double stop_rad = 5e-5;
+  double stop_m = 5e-4;           ///< a smaller step ends the search
+  double stop_rad = 1e-4;
   Result<Ok> validate() const;
 };
 
