@@ -154,7 +154,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (auto refusal = service_.refuse_socket(request)) return write(std::move(*refusal));
     stream_.expires_never();
     http::request<http::empty_body> head{parser_->get().base()};
-    sockets_.take({stream_.release_socket(), std::move(head)});
+    sockets_.take({stream_.release_socket(), std::move(head), std::move(alive_)});
   }
 
   void refuse(Response response) {

@@ -5,6 +5,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
+#include <memory>
 
 namespace smokemap::server {
 
@@ -12,6 +13,7 @@ namespace smokemap::server {
 struct RawUpgrade {
   boost::asio::ip::tcp::socket socket;
   boost::beast::http::request<boost::beast::http::empty_body> request;
+  std::shared_ptr<void> alive;  ///< counts as a connection as long as it is held
 };
 
 }  // namespace smokemap::server

@@ -35,7 +35,8 @@ Statement& Statement::bind(std::int64_t value) {
 }
 
 Statement& Statement::bind(std::string_view text) {
-  if (statement_ && sqlite3_bind_text(statement_.get(), ++bound_, text.data(), static_cast<int>(text.size()),
+  const char* data = text.data() ? text.data() : "";  // a null pointer would be NULL, which equals nothing
+  if (statement_ && sqlite3_bind_text(statement_.get(), ++bound_, data, static_cast<int>(text.size()),
                                       SQLITE_TRANSIENT) != SQLITE_OK)
     error_ = fail(Errc::kTooLarge, "a text of " + std::to_string(text.size()) + " bytes does not fit the database");
   return *this;

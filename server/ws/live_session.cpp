@@ -104,7 +104,7 @@ void LiveSession::push_control(std::string text) {
 
 void LiveSession::on_time(std::int64_t now_ms) {
   now_ms_ = now_ms;
-  if (!who_ && now_ms - opened_ms_ > params_.hello_ms) close(kNoToken, "no hello came");
+  if (!who_ && now_ms - opened_ms_ > params_.hello_ms) close(kProtocolError, "no hello came");
 }
 
 std::optional<LiveSession::Frame> LiveSession::next_frame() {

@@ -26,7 +26,7 @@ constexpr const char* kProtocol = "smokemap.v1";
 class WsSession final : public Peer, public std::enable_shared_from_this<WsSession> {
  public:
   WsSession(RawUpgrade upgrade, Hub& hub, std::shared_ptr<const Clock> clock)
-      : ws_(std::move(upgrade.socket)), timer_(ws_.get_executor()), request_(std::move(upgrade.request)), hub_(hub), clock_(std::move(clock)) {}
+      : ws_(std::move(upgrade.socket)), timer_(ws_.get_executor()), request_(std::move(upgrade.request)), alive_(std::move(upgrade.alive)), hub_(hub), clock_(std::move(clock)) {}
 
   void start(const LiveSession::Params& params, Access& access, CommandSink& commands) {
     LiveSession::World world{access, hub_, commands, clock_, weak_from_this(), {}};
@@ -148,6 +148,7 @@ class WsSession final : public Peer, public std::enable_shared_from_this<WsSessi
   websocket::stream<beast::tcp_stream> ws_;
   asio::steady_timer timer_;
   beast::http::request<beast::http::empty_body> request_;
+  std::shared_ptr<void> alive_;
   Hub& hub_;
   std::shared_ptr<const Clock> clock_;
   std::optional<LiveSession> live_;
