@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <memory>
@@ -9,6 +10,7 @@
 #include "app/commands.hpp"
 #include "app/layout_preview.hpp"
 #include "layout/read_layout.hpp"
+#include "recording/layout_json.hpp"
 
 namespace smokemap::app {
 namespace {
@@ -21,30 +23,26 @@ struct LayoutArguments {
   double metres_per_pixel = 0;
 };
 
-nlohmann::json point(const Point2& p) { return {std::round(p.x() * 100) / 100, std::round(p.y() * 100) / 100}; }
-
-nlohmann::json document(const LayoutReading& reading) {
+/// The document as written: `corners` lists places where walls of different directions meet. Ends of walls at doors follow from
+/// `walls` (the reader of the format puts them back), so that a corner in the file is what a person calls a corner.
+std::string document(const LayoutReading& reading) {
+  LayoutDocument whole{reading.layout, reading.homography, reading.sheet_corners_px};
+  auto json = nlohmann::json::parse(to_json(whole));
   const auto& map = reading.layout;
-  nlohmann::json out = {{"size", {map.width_px, map.height_px}}, {"walls", nlohmann::json::array()}, {"doors", nlohmann::json::array()}, {"corners", nlohmann::json::array()}, {"rooms", nlohmann::json::array()}};
+  std::vector<std::vector<double>> headings(map.corners.size());
   for (std::size_t w = 0; w < map.walls.size(); ++w) {
-    const auto s = map.wall_px(static_cast<int>(w));
-    out["walls"].push_back({s.a.x(), s.a.y(), s.b.x(), s.b.y(), map.walls[w].thickness_px});
-    out["wall_confidence"].push_back(map.walls[w].confidence);
+    headings[static_cast<std::size_t>(map.walls[w].corner_a)].push_back(map.wall_px(static_cast<int>(w)).heading());
+    headings[static_cast<std::size_t>(map.walls[w].corner_b)].push_back(map.wall_px(static_cast<int>(w)).heading());
   }
-  for (const auto& o : map.openings) out["doors"].push_back({o.gap_px.a.x(), o.gap_px.a.y(), o.gap_px.b.x(), o.gap_px.b.y()});
-  for (const auto& room : map.rooms_px) {
-    nlohmann::json ring = nlohmann::json::array();
-    for (const auto& p : room) ring.push_back(point(p));
-    out["rooms"].push_back(ring);
+  auto corners = nlohmann::json::array();
+  for (std::size_t c = 0; c < map.corners.size(); ++c) {
+    const bool turns = std::any_of(headings[c].begin(), headings[c].end(), [&](double h) { return line_angle_between(h, headings[c].front()) > radians(20); });
+    if (turns) corners.push_back({map.corners[c].p_px.x(), map.corners[c].p_px.y()});
   }
-  out.erase("corners");
-  for (const auto& p : reading.sheet_corners_px) out["sheet_corners"].push_back(point(p));
-  out["sheet_confidence"] = reading.sheet_confidence;
-  for (const auto& s : map.signs) out["signs"].push_back({{"x", s.p_px.x()}, {"y", s.p_px.y()}, {"r", s.radius_px}, {"colour", s.colour}});
-  if (map.you_are_here_px) out["you_are_here"] = point(*map.you_are_here_px);
-  if (map.scale) out["metres_per_pixel"] = map.scale->metres_per_pixel;
-  out["warnings"] = map.warnings;
-  return out;
+  json["corners"] = corners;
+  json.erase("wall_corners");
+  json["sheet_confidence"] = reading.sheet_confidence;
+  return json.dump();
 }
 
 void run_layout(const LayoutArguments& arguments, Outcome& outcome) {
@@ -58,7 +56,7 @@ void run_layout(const LayoutArguments& arguments, Outcome& outcome) {
   const cv::Mat picture = cv::imread(arguments.picture);
   const auto reading = read_layout(picture, options);
   if (!reading) return outcome.no_answer(reading.error());
-  std::ofstream(arguments.output) << document(*reading).dump() << '\n';
+  std::ofstream(arguments.output) << document(*reading) << '\n';
   if (!arguments.preview.empty()) cv::imwrite(arguments.preview, draw_layout(reading->rectified, reading->layout));
 }
 

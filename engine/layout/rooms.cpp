@@ -5,6 +5,36 @@
 
 namespace smokemap {
 
+namespace {
+
+/// Lines that close what the reader left open: from a loose end without an opening to the nearest wall or corner ahead.
+std::vector<Segment2> shutters(const LayoutMap& map, double reach_px) {
+  std::vector<Segment2> lines;
+  for (std::size_t w = 0; w < map.walls.size(); ++w) {
+    const Segment2 wall = map.wall_px(static_cast<int>(w));
+    for (const bool at_b : {false, true}) {
+      const Point2 end = at_b ? wall.b : wall.a, outward = at_b ? wall.direction() : Point2(-wall.direction());
+      const auto corner = static_cast<std::size_t>(at_b ? map.walls[w].corner_b : map.walls[w].corner_a);
+      const bool met = map.corners[corner].degree > 1 || std::any_of(map.openings.begin(), map.openings.end(), [&](const LayoutOpening& o) {
+                         return (o.gap_px.a - end).norm() < 1.5 || (o.gap_px.b - end).norm() < 1.5;
+                       });
+      if (met) continue;
+      double best = reach_px;
+      Point2 target = end;
+      for (std::size_t j = 0; j < map.walls.size(); ++j) {
+        if (j == w) continue;
+        const Point2 p = closest_point(map.wall_px(static_cast<int>(j)), end);
+        const double d = (p - end).norm();
+        if (d > 1e-9 && d < best && (p - end).dot(outward) > 0.35 * d) best = d, target = p;
+      }
+      if (best < reach_px) lines.push_back({end, target});
+    }
+  }
+  return lines;
+}
+
+}  // namespace
+
 std::vector<Polygon> find_rooms(const LayoutMap& map) {
   if (map.walls.empty()) return {};
   Point2 low = map.corners.front().p_px, high = low;
@@ -23,6 +53,7 @@ std::vector<Polygon> find_rooms(const LayoutMap& map) {
     cv::line(closed, to_raster(s.a), to_raster(s.b), cv::Scalar(0), 3);
   }
   for (const auto& o : map.openings) cv::line(closed, to_raster(o.gap_px.a), to_raster(o.gap_px.b), cv::Scalar(0), 3);
+  for (const auto& line : shutters(map, 0.05 * extent)) cv::line(closed, to_raster(line.a), to_raster(line.b), cv::Scalar(0), 3);
   cv::floodFill(closed, {0, 0}, cv::Scalar(0));
   cv::Mat labels, stats, centroids;
   const int count = cv::connectedComponentsWithStats(closed, labels, stats, centroids, 4);

@@ -58,9 +58,12 @@ std::vector<Figure> figures_in(const cv::Mat& mask, double low_px, double high_p
   cv::morphologyEx(mask, closed, cv::MORPH_OPEN, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
   cv::morphologyEx(closed, closed, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_RECT, {reach, reach}));
   std::vector<std::vector<cv::Point>> outlines;
-  cv::findContours(closed, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_SIMPLE);
+  std::vector<cv::Vec4i> family;  // a red frame around the sheet must not swallow the signs inside it
+  cv::findContours(closed, outlines, family, cv::RETR_CCOMP, cv::CHAIN_APPROX_SIMPLE);
   std::vector<Figure> figures;
-  for (const auto& outline : outlines) {
+  for (std::size_t i = 0; i < outlines.size(); ++i) {
+    if (family[i][3] >= 0) continue;  // the rim of a hole
+    const auto& outline = outlines[i];
     const cv::Rect box = cv::boundingRect(outline);
     const double small = std::min(box.width, box.height), large = std::max(box.width, box.height);
     if (small < low_px || large > high_px || large > 2.6 * small) continue;

@@ -29,7 +29,9 @@ struct Region {
   std::vector<std::size_t> members;
   double length = 0;
   int junctions = 0;
-  double score() const { return std::max(0, junctions - 3) * length; }
+  Point2 low = Point2::Constant(1e300), high = Point2::Constant(-1e300);
+  /// Letters and words have many short strokes in a small space, frames are large and empty.
+  double score() const { return members.empty() ? 0 : std::max(0, junctions - 3) * length * (high - low).norm(); }
 };
 
 /// Strokes that touch, or continue each other within `bridge_px`, hang together.
@@ -44,7 +46,7 @@ std::vector<Region> connected_regions(const std::vector<InkStroke>& strokes, dou
       if ((one.axis.midpoint() - two.axis.midpoint()).squaredNorm() > reach * reach) continue;
       const double gap = gap_between(one.axis, two.axis);
       const double turn = line_angle_between(one.axis.heading(), two.axis.heading());
-      if (gap <= touch && turn > radians(20)) junctions[i] += 1;
+      if (gap <= touch && turn > radians(20) && std::min(one.length(), two.length()) > 0.015 * side_px) junctions[i] += 1;
       const bool continues = turn < radians(5) && std::abs(signed_line_distance(one.axis, two.axis.midpoint())) < touch;
       if (gap <= touch || (continues && gap <= bridge_px)) groups.join(i, j);
     }
@@ -54,6 +56,7 @@ std::vector<Region> connected_regions(const std::vector<InkStroke>& strokes, dou
     region.members.push_back(i);
     if (strokes[i].length() > 0.015 * side_px) region.length += strokes[i].length();
     region.junctions += junctions[i];
+    for (const Point2& end : {strokes[i].axis.a, strokes[i].axis.b}) region.low = region.low.cwiseMin(end), region.high = region.high.cwiseMax(end);
   }
   std::vector<Region> regions;
   for (auto& region : by_root)
@@ -132,10 +135,14 @@ std::vector<InkStroke> the_building(const std::vector<InkStroke>& walls, double 
   std::vector<bool> adopted(regions.size(), false);
   std::vector<InkStroke> building = pick(walls, regions.front().members);
   adopted[0] = true;
+  Point2 low = regions.front().low, high = regions.front().high;
   for (bool grown = true; grown;) {
     grown = false;
     for (std::size_t r = 1; r < regions.size(); ++r) {
       if (adopted[r] || regions[r].length < 0.03 * side_px) continue;
+      const Point2 new_low = low.cwiseMin(regions[r].low), new_high = high.cwiseMax(regions[r].high);
+      const bool grows = (new_high - new_low).prod() > 1.15 * (high - low).prod();
+      if (grows && regions[r].junctions <= static_cast<int>(regions[r].members.size())) continue;  // a frame or a box of text
       const bool near = std::any_of(regions[r].members.begin(), regions[r].members.end(), [&](std::size_t m) {
         return std::any_of(building.begin(), building.end(), [&](const InkStroke& b) { return gap_between(walls[m].axis, b.axis) < reach_px; });
       });
@@ -143,6 +150,7 @@ std::vector<InkStroke> the_building(const std::vector<InkStroke>& walls, double 
       const auto more = pick(walls, regions[r].members);
       building.insert(building.end(), more.begin(), more.end());
       adopted[r] = grown = true;
+      low = new_low, high = new_high;
     }
   }
   return building;
@@ -178,7 +186,7 @@ WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture
 
   // Lines of the main class in pairs: nothing is thicker than the outline of a wall.
   const auto pairs = merge_collinear(pair_hollow(thick, 0.6 * params.max_wall_share * side), params.merge_angle_deg, 2);
-  if (2 * total_length(pairs) > 0.4 * total_length(thick)) {
+  if (2 * total_length(pairs) > 0.22 * total_length(thick)) {
     std::vector<std::pair<double, double>> spacing;
     for (const auto& p : pairs) spacing.emplace_back(p.thickness_px, p.length());
     const double usual = weighted_quantile(spacing, 0.5);
