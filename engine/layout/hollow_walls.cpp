@@ -35,19 +35,43 @@ bool has_rung(const std::vector<Neighbour>& around, double offset, double low, d
   });
 }
 
-}  // namespace
-
-std::vector<InkStroke> pair_hollow(const std::vector<InkStroke>& thin, double max_spacing_px) {
-  std::vector<std::vector<Neighbour>> around(thin.size());
-  for (std::size_t i = 0; i < thin.size(); ++i) {
-    const Point2 middle = thin[i].axis.midpoint();
-    for (std::size_t j = 0; j < thin.size(); ++j) {
+/// For every line the parallel ones beside it.
+std::vector<std::vector<Neighbour>> neighbourhoods(const std::vector<InkStroke>& lines, double reach_px) {
+  std::vector<std::vector<Neighbour>> around(lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Point2 middle = lines[i].axis.midpoint();
+    for (std::size_t j = 0; j < lines.size(); ++j) {
       if (i == j) continue;
-      const double reach = 0.5 * (thin[i].length() + thin[j].length()) + max_spacing_px;
-      if ((thin[j].axis.midpoint() - middle).squaredNorm() > reach * reach) continue;
-      if (const auto n = beside(thin[i], thin[j], j, 1.7 * max_spacing_px)) around[i].push_back(*n);
+      const double reach = 0.5 * (lines[i].length() + lines[j].length()) + reach_px;
+      if ((lines[j].axis.midpoint() - middle).squaredNorm() > reach * reach) continue;
+      if (const auto n = beside(lines[i], lines[j], j, reach_px)) around[i].push_back(*n);
     }
   }
+  return around;
+}
+
+}  // namespace
+
+std::vector<InkStroke> without_ladders(const std::vector<InkStroke>& strokes, double max_spacing_px) {
+  const auto around = neighbourhoods(strokes, max_spacing_px);
+  const auto alike = [&](std::size_t i, const Neighbour& n) {
+    const double ratio = strokes[n.other].length() / strokes[i].length();
+    return ratio > 0.5 && ratio < 2 && std::abs(n.offset) > 1.6 * strokes[i].thickness_px;
+  };
+  std::vector<bool> rung(strokes.size(), false);
+  for (std::size_t i = 0; i < strokes.size(); ++i)
+    for (const auto& n : around[i])
+      if (alike(i, n) && has_rung(around[i], n.offset, n.low, n.high)) rung[i] = true;
+  std::vector<InkStroke> kept;
+  for (std::size_t i = 0; i < strokes.size(); ++i) {
+    const bool outermost = std::any_of(around[i].begin(), around[i].end(), [&](const Neighbour& n) { return rung[n.other] && alike(i, n) && strokes[i].length() < 1.3 * strokes[n.other].length(); });
+    if (!rung[i] && !outermost) kept.push_back(strokes[i]);
+  }
+  return kept;
+}
+
+std::vector<InkStroke> pair_hollow(const std::vector<InkStroke>& thin, double max_spacing_px) {
+  const auto around = neighbourhoods(thin, 1.7 * max_spacing_px);
   std::vector<InkStroke> pairs;
   for (std::size_t i = 0; i < thin.size(); ++i) {
     for (const auto& n : around[i]) {

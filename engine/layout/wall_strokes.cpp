@@ -113,6 +113,20 @@ double total_length(const std::vector<InkStroke>& strokes) {
   return std::accumulate(strokes.begin(), strokes.end(), 0.0, [](double sum, const InkStroke& s) { return sum + s.length(); });
 }
 
+/// Short strokes that lie in the body of a longer one, a little askew: the rounded end of a wall, the foot of an arc.
+std::vector<InkStroke> without_echoes(const std::vector<InkStroke>& strokes) {
+  std::vector<InkStroke> kept;
+  for (const auto& s : strokes) {
+    const bool echo = std::any_of(strokes.begin(), strokes.end(), [&](const InkStroke& o) {
+      const double body = 0.75 * o.thickness_px + 1;
+      return o.length() > 1.3 * s.length() && line_angle_between(o.axis.heading(), s.axis.heading()) < radians(35) &&
+             distance(o.axis, s.axis.a) < body && distance(o.axis, s.axis.b) < body;
+    });
+    if (!echo) kept.push_back(s);
+  }
+  return kept;
+}
+
 /// Blocks as long as wide are columns, signs or letters, unless they carry on another wall.
 std::vector<InkStroke> without_blocks(const std::vector<InkStroke>& strokes, double reach_px) {
   std::vector<InkStroke> kept;
@@ -128,8 +142,19 @@ std::vector<InkStroke> without_blocks(const std::vector<InkStroke>& strokes, dou
   return kept;
 }
 
+/// Letters are short, frames and boxes of text are thin and have no partitions.
+bool could_be_a_wing(const std::vector<InkStroke>& walls, const Region& region, double thickness_px, double side_px) {
+  double longest = 0, thickness = 0, length = 0;
+  for (const std::size_t m : region.members) {
+    longest = std::max(longest, walls[m].length());
+    thickness += walls[m].thickness_px * walls[m].length();
+    length += walls[m].length();
+  }
+  return longest > 0.05 * side_px && (region.junctions > static_cast<int>(region.members.size()) || thickness > 0.7 * thickness_px * length);
+}
+
 /// The best region and what lies near it: corridors and window bands part a building into pieces.
-std::vector<InkStroke> the_building(const std::vector<InkStroke>& walls, double reach_px, double side_px) {
+std::vector<InkStroke> the_building(const std::vector<InkStroke>& walls, double thickness_px, double reach_px, double side_px) {
   const auto regions = connected_regions(walls, reach_px, side_px);
   if (regions.empty()) return {};
   std::vector<bool> adopted(regions.size(), false);
@@ -142,7 +167,7 @@ std::vector<InkStroke> the_building(const std::vector<InkStroke>& walls, double 
       if (adopted[r] || regions[r].length < 0.03 * side_px) continue;
       const Point2 new_low = low.cwiseMin(regions[r].low), new_high = high.cwiseMax(regions[r].high);
       const bool grows = (new_high - new_low).prod() > 1.15 * (high - low).prod();
-      if (grows && regions[r].junctions <= static_cast<int>(regions[r].members.size())) continue;  // a frame or a box of text
+      if (grows && !could_be_a_wing(walls, regions[r], thickness_px, side_px)) continue;
       const bool near = std::any_of(regions[r].members.begin(), regions[r].members.end(), [&](std::size_t m) {
         return std::any_of(building.begin(), building.end(), [&](const InkStroke& b) { return gap_between(walls[m].axis, b.axis) < reach_px; });
       });
@@ -154,6 +179,29 @@ std::vector<InkStroke> the_building(const std::vector<InkStroke>& walls, double 
     }
   }
   return building;
+}
+
+/// Gray blocks (signs on a copy without colour, shaded areas) are not as dark as the walls.
+std::vector<InkStroke> dark_enough(const std::vector<InkStroke>& strokes) {
+  std::vector<std::pair<double, double>> darkness;
+  for (const auto& s : strokes) darkness.emplace_back(s.darkness, s.length());
+  const double usual = weighted_quantile(darkness, 0.6);
+  std::vector<InkStroke> kept;
+  for (const auto& s : strokes)
+    if (s.darkness > (s.thickness_px >= 5 ? 0.75 : 0.5) * usual) kept.push_back(s);
+  return kept;
+}
+
+/// Where a plan draws some walls as two lines, those two lines become one.
+std::vector<InkStroke> with_pairs_joined(const std::vector<InkStroke>& strokes, const std::vector<InkStroke>& pairs) {
+  std::vector<InkStroke> joined = pairs;
+  for (const auto& s : strokes) {
+    const bool half = std::any_of(pairs.begin(), pairs.end(), [&](const InkStroke& p) {
+      return line_angle_between(p.axis.heading(), s.axis.heading()) < radians(4) && distance(p.axis, s.axis.midpoint()) < 0.6 * p.thickness_px;
+    });
+    if (!half) joined.push_back(s);
+  }
+  return joined;
 }
 
 }  // namespace
@@ -182,24 +230,25 @@ WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture
     if (s.thickness_px < out.thin_limit_px) out.thin.push_back(s);
     else if (s.thickness_px < 2.2 * out.thickness_px && s.coverage > 0.55) thick.push_back(s);
   }
-  thick = without_blocks(thick, params.max_opening_share * side);
+  thick = without_blocks(without_echoes(thick), params.max_opening_share * side);
 
   // Lines of the main class in pairs: nothing is thicker than the outline of a wall.
   const auto pairs = merge_collinear(pair_hollow(thick, 0.6 * params.max_wall_share * side), params.merge_angle_deg, 2);
-  if (2 * total_length(pairs) > 0.22 * total_length(thick)) {
+  const double paired = total_length(pairs) / std::max(1.0, total_length(thick));
+  out.hollow = paired > 0.35;
+  if (out.hollow) {
     std::vector<std::pair<double, double>> spacing;
     for (const auto& p : pairs) spacing.emplace_back(p.thickness_px, p.length());
     const double usual = weighted_quantile(spacing, 0.5);
-    out.walls.clear();
     for (const auto& p : pairs)
       if (p.thickness_px < 2.5 * usual) out.walls.push_back(p);
     out.thickness_px = weighted_quantile(spacing, 0.6);
     out.thin = candidates;
-    out.hollow = true;
   } else {
-    out.walls = thick;
+    out.walls = without_ladders(dark_enough(thick), 0.015 * side);
+    if (paired > 0.06) out.walls = with_pairs_joined(out.walls, pairs);
   }
-  out.walls = the_building(out.walls, params.max_opening_share * side, side);
+  out.walls = the_building(out.walls, out.thickness_px, params.max_opening_share * side, side);
   return out;
 }
 

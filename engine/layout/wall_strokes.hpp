@@ -27,6 +27,10 @@ WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture
 /// (stairs, hatching, shelves) makes no pair.
 std::vector<InkStroke> pair_hollow(const std::vector<InkStroke>& thin, double max_spacing_px);
 
+/// Drops stairs, hatching and shelves: lines with like neighbours on both sides, evenly spaced at most `max_spacing_px` apart,
+/// and the outermost lines of such a row.
+std::vector<InkStroke> without_ladders(const std::vector<InkStroke>& strokes, double max_spacing_px);
+
 /// Strokes on one line, overlapping or less than `gap_px` apart, become one.
 std::vector<InkStroke> merge_collinear(std::vector<InkStroke> strokes, double angle_deg, double gap_px);
 

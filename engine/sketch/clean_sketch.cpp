@@ -213,7 +213,7 @@ Result<CleanSketch> clean_sketch(const SketchMap& sketch, const SketchParams& pa
   }
   for (const auto& g : clean.gaps) draw_line(shut, g.gap_px, params.min_wall_px, 255);
 
-  const double least = 0.002 * finder.extent() * finder.extent();
+  const double least = std::max(9.0, 0.002 * finder.extent() * finder.extent());
   double radius = 0.5 * params.close_gap_share * finder.extent();
   const cv::Mat inside = (shut == 0) & (outside_of(shut, radius) == 0);
   const double wide = 0.5 * params.report_gap_share * finder.extent();

@@ -1,0 +1,218 @@
+#include "layout/read_layout.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <stop_token>
+
+#include "tests/engine/layout/drawn_plan.hpp"
+#include "tests/support/result_matchers.hpp"
+
+namespace smokemap {
+namespace {
+
+using testing::covered_by;
+using testing::draw_office;
+using testing::wall_segments;
+
+int count_kind(const LayoutMap& map, OpeningKind kind) {
+  return static_cast<int>(std::count_if(map.openings.begin(), map.openings.end(), [&](const LayoutOpening& o) { return o.kind == kind; }));
+}
+
+TEST(ReadLayout, FindsEveryWallOfACleanDrawingAndNothingElse) {
+  const auto plan = draw_office();
+  const auto reading = read_layout(plan.picture);
+  ASSERT_TRUE(reading.ok());
+  const auto found = wall_segments(reading->layout);
+  EXPECT_GT(covered_by(plan.walls, found, 6), 0.97);
+  EXPECT_GT(covered_by(found, plan.walls, 6), 0.95);
+}
+
+TEST(ReadLayout, ClosesRoomsAtTheirDoors) {
+  const auto plan = draw_office();
+  const auto reading = read_layout(plan.picture);
+  ASSERT_TRUE(reading.ok());
+  EXPECT_EQ(static_cast<int>(reading->layout.rooms_px.size()), plan.rooms);
+  EXPECT_EQ(reading->layout.openings.size(), plan.doors.size());
+  EXPECT_GE(count_kind(reading->layout, OpeningKind::kDoor), 4);
+}
+
+TEST(ReadLayout, GuessesTheScaleFromDoorsAndSaysSo) {
+  const auto reading = read_layout(draw_office().picture);
+  ASSERT_TRUE(reading.ok());
+  ASSERT_TRUE(reading->layout.scale.has_value());
+  EXPECT_NEAR(reading->layout.scale->metres_per_pixel, 0.9 / 70, 0.25 * 0.9 / 70);
+  EXPECT_FALSE(reading->layout.scale->by_person);
+  EXPECT_GE(reading->layout.scale->relative_sigma, 0.1);
+}
+
+TEST(ReadLayout, TakesAGivenScaleForGranted) {
+  LayoutOptions options;
+  options.metres_per_pixel = 0.02;
+  const auto reading = read_layout(draw_office().picture, options);
+  ASSERT_TRUE(reading.ok());
+  EXPECT_DOUBLE_EQ(reading->layout.scale->metres_per_pixel, 0.02);
+  EXPECT_TRUE(reading->layout.scale->by_person);
+}
+
+TEST(ReadLayout, SeesTheSignInItsColour) {
+  const auto reading = read_layout(draw_office().picture);
+  ASSERT_TRUE(reading.ok());
+  ASSERT_EQ(reading->layout.signs.size(), 1U);
+  EXPECT_EQ(reading->layout.signs.front().colour, "green");
+  EXPECT_LT((reading->layout.signs.front().p_px - Point2(868, 518)).norm(), 3);
+}
+
+TEST(ReadLayout, TurnsItsAnswerWithThePicture) {
+  const auto plan = draw_office();
+  cv::Mat turned;
+  cv::rotate(plan.picture, turned, cv::ROTATE_90_CLOCKWISE);
+  const auto reading = read_layout(turned);
+  ASSERT_TRUE(reading.ok());
+  std::vector<Segment2> truth;
+  const double height = plan.picture.rows - 1;
+  for (const auto& w : plan.walls) truth.push_back({Point2(height - w.a.y(), w.a.x()), Point2(height - w.b.y(), w.b.x())});
+  const auto found = wall_segments(reading->layout);
+  EXPECT_GT(covered_by(truth, found, 6), 0.97);
+  EXPECT_GT(covered_by(found, truth, 6), 0.95);
+}
+
+TEST(ReadLayout, KeepsObliqueWallsOblique) {
+  const auto plan = draw_office();
+  const cv::Mat turn = cv::getRotationMatrix2D(cv::Point2f(800, 550), 17, 0.8);
+  cv::Mat turned;
+  cv::warpAffine(plan.picture, turned, turn, plan.picture.size(), cv::INTER_AREA, cv::BORDER_CONSTANT, cv::Scalar(255, 255, 255));
+  const auto reading = read_layout(turned);
+  ASSERT_TRUE(reading.ok());
+  std::vector<Segment2> truth;
+  const auto map = [&](const Point2& p) {
+    return Point2(turn.at<double>(0, 0) * p.x() + turn.at<double>(0, 1) * p.y() + turn.at<double>(0, 2),
+                  turn.at<double>(1, 0) * p.x() + turn.at<double>(1, 1) * p.y() + turn.at<double>(1, 2));
+  };
+  for (const auto& w : plan.walls) truth.push_back({map(w.a), map(w.b)});
+  EXPECT_GT(covered_by(truth, wall_segments(reading->layout), 6), 0.95);
+}
+
+TEST(ReadLayout, ReadsTheSamePlanAtHalfAndDoubleSize) {
+  for (const double unit : {0.6, 1.7}) {
+    const auto plan = draw_office(unit);
+    const auto reading = read_layout(plan.picture);
+    ASSERT_TRUE(reading.ok()) << unit;
+    EXPECT_GT(covered_by(plan.walls, wall_segments(reading->layout), 6 * unit), 0.95) << unit;
+    EXPECT_NEAR(static_cast<int>(reading->layout.rooms_px.size()), plan.rooms, 1) << unit;
+  }
+}
+
+TEST(ReadLayout, ReadsHollowWallsAsOneWallEach) {
+  // every wall as two thin lines: the drawing's outline with the walls' inside left white
+  const auto plan = draw_office(1.0, false);
+  cv::Mat gray, ink, core;
+  cv::cvtColor(plan.picture, gray, cv::COLOR_BGR2GRAY);
+  ink = gray < 128;
+  cv::erode(ink, core, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
+  cv::Mat hollow(plan.picture.size(), CV_8UC3, cv::Scalar(255, 255, 255));
+  hollow.setTo(cv::Scalar(0, 0, 0), ink & ~core);
+  const auto reading = read_layout(hollow);
+  ASSERT_TRUE(reading.ok());
+  const auto found = wall_segments(reading->layout);
+  EXPECT_GT(covered_by(plan.walls, found, 6), 0.9);
+  double drawn = 0, read = 0;
+  for (const auto& w : plan.walls) drawn += w.length();
+  for (const auto& w : found) read += w.length();
+  EXPECT_LT(read, 1.2 * drawn) << "both outlines of a wall were taken for walls";
+}
+
+TEST(ReadLayout, SeesThroughShadowsAndNoise) {
+  auto plan = draw_office();
+  cv::RNG noise(7);
+  cv::Mat grain(plan.picture.size(), CV_16SC3);
+  noise.fill(grain, cv::RNG::NORMAL, 0, 6);
+  for (int y = 0; y < plan.picture.rows; ++y)
+    for (int x = 0; x < plan.picture.cols; ++x)
+      for (int c = 0; c < 3; ++c) {
+        const double light = 0.45 + 0.5 * x / plan.picture.cols;
+        auto& value = plan.picture.at<cv::Vec3b>(y, x)[c];
+        value = cv::saturate_cast<uchar>(light * value + grain.at<cv::Vec3s>(y, x)[c]);
+      }
+  cv::GaussianBlur(plan.picture, plan.picture, {5, 5}, 1.0);
+  const auto reading = read_layout(plan.picture);
+  ASSERT_TRUE(reading.ok());
+  const auto found = wall_segments(reading->layout);
+  EXPECT_GT(covered_by(plan.walls, found, 6), 0.93);
+  EXPECT_GT(covered_by(found, plan.walls, 6), 0.90);
+}
+
+TEST(ReadLayout, SaysNoToPicturesWithoutWalls) {
+  EXPECT_EQ(read_layout(cv::Mat()).error().code, Errc::kInvalidArgument);
+  EXPECT_EQ(read_layout(cv::Mat(1, 1, CV_8UC3, cv::Scalar(0, 0, 0))).error().code, Errc::kDegenerate);
+  EXPECT_EQ(read_layout(cv::Mat(600, 800, CV_8UC3, cv::Scalar(255, 255, 255))).error().code, Errc::kDegenerate);
+  EXPECT_EQ(read_layout(cv::Mat(600, 800, CV_8UC3, cv::Scalar(0, 0, 0))).error().code, Errc::kDegenerate);
+  EXPECT_EQ(read_layout(cv::Mat(10, 10, CV_32FC1, cv::Scalar(0))).error().code, Errc::kInvalidArgument);
+}
+
+TEST(ReadLayout, NoiseGivesAnErrorOrWallsOfWhichItWarns) {
+  cv::Mat picture(400, 500, CV_8UC3);
+  cv::RNG(3).fill(picture, cv::RNG::UNIFORM, 0, 256);
+  const auto reading = read_layout(picture);
+  if (reading.ok()) {
+    EXPECT_FALSE(reading->layout.warnings.empty());
+  } else {
+    EXPECT_EQ(reading.error().code, Errc::kDegenerate);
+  }
+}
+
+TEST(ReadLayout, RefusesPicturesOverTheLimit) {
+  LayoutParams params;
+  params.max_megapixels = 0.5;
+  EXPECT_EQ(read_layout(draw_office().picture, {}, params).error().code, Errc::kTooLarge);
+}
+
+TEST(ReadLayout, StopsWhenAsked) {
+  std::stop_source source;
+  source.request_stop();
+  Progress progress;
+  progress.stop = source.get_token();
+  EXPECT_EQ(read_layout(draw_office().picture, {}, {}, progress).error().code, Errc::kCancelled);
+}
+
+TEST(ReadLayout, GivesTheSameBytesAtAnyThreadCount) {
+  const auto plan = draw_office(0.8);
+  cv::setNumThreads(1);
+  const auto one = read_layout(plan.picture);
+  cv::setNumThreads(4);
+  const auto four = read_layout(plan.picture);
+  ASSERT_TRUE(one.ok() && four.ok());
+  ASSERT_EQ(one->layout.corners.size(), four->layout.corners.size());
+  for (std::size_t i = 0; i < one->layout.corners.size(); ++i) EXPECT_EQ(one->layout.corners[i].p_px, four->layout.corners[i].p_px);
+  ASSERT_EQ(one->layout.walls.size(), four->layout.walls.size());
+  for (std::size_t i = 0; i < one->layout.walls.size(); ++i) EXPECT_EQ(one->layout.walls[i].confidence, four->layout.walls[i].confidence);
+}
+
+TEST(ReadLayout, ConfidencesAndDegreesAreWhatTheyClaim) {
+  const auto reading = read_layout(draw_office().picture);
+  ASSERT_TRUE(reading.ok());
+  std::vector<int> degree(reading->layout.corners.size(), 0);
+  for (const auto& w : reading->layout.walls) {
+    EXPECT_GE(w.confidence, 0);
+    EXPECT_LE(w.confidence, 1);
+    EXPECT_NE(w.corner_a, w.corner_b);
+    ++degree[static_cast<std::size_t>(w.corner_a)], ++degree[static_cast<std::size_t>(w.corner_b)];
+  }
+  for (std::size_t i = 0; i < degree.size(); ++i) EXPECT_EQ(degree[i], reading->layout.corners[i].degree);
+}
+
+TEST(ReadLayout, GrayAndTransparentPicturesReadLikeTheirColours) {
+  const auto plan = draw_office(0.8);
+  cv::Mat gray, alpha;
+  cv::cvtColor(plan.picture, gray, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(plan.picture, alpha, cv::COLOR_BGR2BGRA);
+  for (const auto& picture : {gray, alpha}) {
+    const auto reading = read_layout(picture);
+    ASSERT_TRUE(reading.ok());
+    EXPECT_GT(covered_by(plan.walls, wall_segments(reading->layout), 6), 0.95);
+  }
+}
+
+}  // namespace
+}  // namespace smokemap

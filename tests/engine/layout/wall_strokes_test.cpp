@@ -1,0 +1,152 @@
+#include "layout/wall_strokes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/random.hpp"
+#include "layout/openings.hpp"
+#include "layout/rooms.hpp"
+#include "layout/wall_graph.hpp"
+
+namespace smokemap {
+namespace {
+
+InkStroke stroke(double x1, double y1, double x2, double y2, double thickness) {
+  InkStroke s;
+  s.axis = {Point2(x1, y1), Point2(x2, y2)};
+  s.thickness_px = thickness, s.coverage = 1, s.darkness = 1;
+  return s;
+}
+
+TEST(TraceStrokes, MeasuresOneObliqueLineToSubPixels) {
+  auto random = random_stream(5, 0);
+  for (int trial = 0; trial < 12; ++trial) {
+    const double angle = uniform(random, 0, kPi), width = 2 + static_cast<double>(uniform_index(random, 14));
+    const Point2 middle(400, 400), half = 250 * Point2(std::cos(angle), std::sin(angle));
+    cv::Mat dark = cv::Mat::zeros(800, 800, CV_8UC1);
+    const auto fixed = [](const Point2& p) { return cv::Point(static_cast<int>(std::lround(p.x() * 16)), static_cast<int>(std::lround(p.y() * 16))); };
+    cv::line(dark, fixed(middle - half), fixed(middle + half), cv::Scalar(255), static_cast<int>(width), cv::LINE_8, 4);
+    cv::GaussianBlur(dark, dark, {5, 5}, 0.9);
+    const auto strokes = trace_strokes(dark, LayoutParams{});
+    ASSERT_FALSE(strokes.empty()) << "angle " << angle << " width " << width;
+    const auto& s = strokes.front();
+    EXPECT_LT(line_angle_between(s.axis.heading(), angle), radians(1));
+    EXPECT_LT(std::abs(signed_line_distance(s.axis, middle)), 1.2);
+    EXPECT_NEAR(s.thickness_px, width, 0.35 * width + 1) << "angle " << angle;
+    EXPECT_NEAR(s.length(), 500, width + 12);
+  }
+}
+
+TEST(PairHollow, MakesOneWallOfTwoLines) {
+  const auto pairs = pair_hollow({stroke(0, 0, 200, 0, 1.5), stroke(10, 9, 190, 9, 1.5)}, 30);
+  ASSERT_EQ(pairs.size(), 1U);
+  EXPECT_NEAR(pairs[0].axis.a.y(), 4.5, 1e-9);
+  EXPECT_NEAR(pairs[0].length(), 180, 1e-9);
+  EXPECT_NEAR(pairs[0].thickness_px, 10.5, 1e-9);
+}
+
+TEST(PairHollow, LeavesStairsAlone) {
+  std::vector<InkStroke> treads;
+  for (int i = 0; i < 9; ++i) treads.push_back(stroke(0, 10 * i, 100, 10 * i, 1.5));
+  EXPECT_TRUE(pair_hollow(treads, 30).empty());
+}
+
+TEST(PairHollow, LeavesLinesApartThatCrossOrAreFar) {
+  EXPECT_TRUE(pair_hollow({stroke(0, 0, 200, 0, 1.5), stroke(0, 80, 200, 80, 1.5)}, 30).empty());
+  EXPECT_TRUE(pair_hollow({stroke(0, 0, 200, 0, 1.5), stroke(100, -50, 100, 50, 1.5)}, 30).empty());
+}
+
+TEST(MergeCollinear, JoinsPiecesOfOneLineOnly) {
+  const auto merged = merge_collinear({stroke(0, 0, 50, 0, 4), stroke(51, 0.5, 120, 0.5, 4), stroke(0, 20, 100, 20, 4)}, 3, 2);
+  ASSERT_EQ(merged.size(), 2U);
+  EXPECT_NEAR(std::max(merged[0].length(), merged[1].length()), 120, 1.0);
+}
+
+TEST(SelectWalls, LeavesThinLinesOut) {
+  std::vector<InkStroke> strokes{stroke(100, 100, 900, 100, 10), stroke(100, 700, 900, 700, 10), stroke(100, 100, 100, 700, 10), stroke(900, 100, 900, 700, 10),
+                                 stroke(500, 100, 500, 700, 5), stroke(100, 400, 500, 400, 5), stroke(500, 300, 900, 300, 5)};
+  for (int i = 0; i < 10; ++i) strokes.push_back(stroke(120, 120 + 10 * i, 220, 120 + 10 * i, 1.2));
+  const auto chosen = select_walls(strokes, {1000, 800}, LayoutParams{});
+  EXPECT_EQ(chosen.walls.size(), 7U);
+  EXPECT_FALSE(chosen.hollow);
+  EXPECT_GT(chosen.thin_limit_px, 1.2);
+  EXPECT_LT(chosen.thin_limit_px, 5);
+}
+
+TEST(SelectWalls, HasNothingToSayAboutNothing) { EXPECT_TRUE(select_walls({}, {1000, 800}, LayoutParams{}).walls.empty()); }
+
+TEST(WallGraph, EndsMeetTheCentreLinesOfWhatTheyReach) {
+  // a partition that ends at the faces of two outer walls, as ink does
+  const auto map = build_wall_graph({stroke(0, 0, 200, 0, 12), stroke(0, 100, 200, 100, 12), stroke(80, 6, 80, 94, 6)}, 12, LayoutParams{});
+  EXPECT_EQ(map.walls.size(), 5U);
+  int tees = 0;
+  for (const auto& c : map.corners) tees += c.degree == 3;
+  EXPECT_EQ(tees, 2);
+}
+
+TEST(WallGraph, CornersOfARectangleCloseWhateverTheOrder) {
+  std::vector<InkStroke> strokes{stroke(6, 0, 194, 0, 12), stroke(200, 6, 200, 94, 12), stroke(194, 100, 6, 100, 12), stroke(0, 94, 0, 6, 12)};
+  std::mt19937_64 random(3);
+  for (int round = 0; round < 6; ++round) {
+    std::shuffle(strokes.begin(), strokes.end(), random);
+    const auto map = build_wall_graph(strokes, 12, LayoutParams{});
+    ASSERT_EQ(map.corners.size(), 4U);
+    for (const auto& c : map.corners) EXPECT_EQ(c.degree, 2);
+  }
+}
+
+TEST(WallGraph, CrossingWallsCutEachOther) {
+  const auto map = build_wall_graph({stroke(0, 50, 100, 50, 4), stroke(50, 0, 50, 100, 4)}, 4, LayoutParams{});
+  EXPECT_EQ(map.walls.size(), 4U);
+  EXPECT_EQ(map.corners.size(), 5U);
+}
+
+LayoutMap wall_with_gap(double from, double to) {
+  return build_wall_graph({stroke(0, 0, from, 0, 8), stroke(to, 0, 600, 0, 8), stroke(0, 0, 0, 300, 8), stroke(600, 0, 600, 300, 8), stroke(0, 300, 600, 300, 8)}, 8, LayoutParams{});
+}
+
+TEST(Openings, AGapBetweenFacingEndsIsAnOpening) {
+  const cv::Mat nothing = cv::Mat::zeros(400, 700, CV_8UC1);
+  auto map = wall_with_gap(280, 320);
+  close_gaps(map, {}, nothing, 8, LayoutParams{});
+  ASSERT_EQ(map.openings.size(), 1U);
+  EXPECT_EQ(map.openings[0].kind, OpeningKind::kPassage);
+  EXPECT_EQ(find_rooms(map).size(), 1U);
+}
+
+TEST(Openings, ALeafMakesADoorAndALineAlongMakesAWindow) {
+  const cv::Mat nothing = cv::Mat::zeros(400, 700, CV_8UC1);
+  auto door = wall_with_gap(280, 320);
+  close_gaps(door, {stroke(280, 0, 280, 40, 1)}, nothing, 8, LayoutParams{});
+  ASSERT_EQ(door.openings.size(), 1U);
+  EXPECT_EQ(door.openings[0].kind, OpeningKind::kDoor);
+  auto window = wall_with_gap(280, 320);
+  close_gaps(window, {stroke(278, 2, 322, 2, 1)}, nothing, 8, LayoutParams{});
+  ASSERT_EQ(window.openings.size(), 1U);
+  EXPECT_EQ(window.openings[0].kind, OpeningKind::kWindow);
+}
+
+TEST(Openings, WhatASignHidesIsADoubtfulWall) {
+  cv::Mat covered = cv::Mat::zeros(400, 700, CV_8UC1);
+  covered(cv::Rect(275, 0, 50, 20)).setTo(255);
+  auto map = wall_with_gap(280, 320);
+  const auto before = map.walls.size();
+  close_gaps(map, {}, covered, 8, LayoutParams{});
+  EXPECT_TRUE(map.openings.empty());
+  ASSERT_EQ(map.walls.size(), before + 1);
+  EXPECT_LT(map.walls.back().confidence, 0.6);
+}
+
+TEST(Openings, AWideGapStaysAGap) {
+  const cv::Mat nothing = cv::Mat::zeros(400, 700, CV_8UC1);
+  auto map = wall_with_gap(150, 450);
+  close_gaps(map, {}, nothing, 8, LayoutParams{});
+  EXPECT_TRUE(map.openings.empty());
+}
+
+}  // namespace
+}  // namespace smokemap
