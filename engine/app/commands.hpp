@@ -19,6 +19,7 @@ struct Outcome {
 // One function a subcommand, each in its own file: adds the options and the callback that does the work.
 // Options live as long as the parser: keep them in a shared_ptr captured by the callback.
 void add_segment(CLI::App& app, Outcome& outcome);
+void add_simulate(CLI::App& app, Outcome& outcome);
 void add_match(CLI::App& app, Outcome& outcome);
 void add_convert(CLI::App& app, Outcome& outcome);
 void add_layout(CLI::App& app, Outcome& outcome);

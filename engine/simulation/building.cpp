@@ -73,6 +73,22 @@ Segment2 FloorPlan::door_gap(int door) const {
   return {line.a + d.from * (line.b - line.a), line.a + d.to * (line.b - line.a)};
 }
 
+std::vector<Segment2> FloorPlan::wall_pieces(int wall) const {
+  std::vector<std::pair<double, double>> gaps;
+  for (const PlanDoor& door : doors)
+    if (door.wall == wall) gaps.emplace_back(door.from, door.to);
+  std::sort(gaps.begin(), gaps.end());
+  gaps.emplace_back(1.0, 1.0);
+  const Segment2 line = wall_line(wall);
+  std::vector<Segment2> pieces;
+  double from = 0;
+  for (const auto& [begin, end] : gaps) {
+    if (begin > from) pieces.push_back({line.a + from * (line.b - line.a), line.a + begin * (line.b - line.a)});
+    from = end;
+  }
+  return pieces;
+}
+
 Polygon FloorPlan::outline(int room) const {
   Polygon ring;
   for (const int corner : rooms[static_cast<std::size_t>(room)].ring) ring.push_back(corners[static_cast<std::size_t>(corner)]);

@@ -57,6 +57,8 @@ struct FloorPlan {
 
   Segment2 wall_line(int wall) const;
   Segment2 door_gap(int door) const;
+  /// The centre lines of a wall between its doors.
+  std::vector<Segment2> wall_pieces(int wall) const;
   Polygon outline(int room) const;
   /// The room that holds the point; -1 = none.
   int room_at(const Point2& p) const;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check.hpp"
 #include "core/random.hpp"
 #include "simulation/path_driver.hpp"
-#include "simulation/random_building.hpp"
 
 namespace smokemap {
 namespace {
@@ -73,21 +73,40 @@ StartHint point_at(const DemoScenario& demo, const Pose2& T_world_robot) {
 
 }  // namespace
 
-Result<DemoScenario> make_demo(std::uint64_t seed) {
+RandomBuildingParams DemoParams::demo_building() {
+  RandomBuildingParams params;
+  params.furniture = 6;
+  return params;
+}
+
+PlanDistortionParams DemoParams::demo_distortion() {
+  PlanDistortionParams params;
+  params.missing_walls = 1;
+  params.phantom_walls = 1;
+  return params;
+}
+
+Result<Ok> DemoParams::validate() const {
+  for (const auto& part : {building.validate(), distortion.validate()})
+    if (!part) return part.error();
+  return ParamCheck("DemoParams")
+      .in_range("burning_s", burning_s, 0, 36000)
+      .in_range("sigma_start_m", sigma_start_m, 0, 3)
+      .in_range("sigma_start_rad", sigma_start_rad, 0, 1)
+      .result();
+}
+
+Result<DemoScenario> make_demo(std::uint64_t seed, const DemoParams& params) {
+  if (const auto valid = params.validate(); !valid) return valid.error();
   DemoScenario demo;
   demo.seed = seed;
   auto random = random_stream(seed, kBuildingStream);
-  RandomBuildingParams building_params;
-  building_params.furniture = 6;
-  auto building = random_building(building_params, random);
+  auto building = random_building(params.building, random);
   if (!building) return building.error();
   demo.building = std::move(*building);
 
   random = random_stream(seed, kPlanStream);
-  PlanDistortionParams wrong;
-  wrong.missing_walls = 1;
-  wrong.phantom_walls = 1;
-  auto plan = distort(demo.building, wrong, random);
+  auto plan = distort(demo.building, params.distortion, random);
   if (!plan) return plan.error();
   demo.plan = std::move(*plan);
 
@@ -97,8 +116,10 @@ Result<DemoScenario> make_demo(std::uint64_t seed) {
   const std::vector<Way> ways = ways_to_rooms(demo.building, demo.world.walls, start);
   if (ways.size() < 2) return fail(Errc::kDegenerate, "no room of this building can be reached");
   demo.p_world_fire = ways.front().path.back();
-  demo.world.smoke = SmokeField(demo.world.walls, SmokeParams{}, {SmokeSource{demo.p_world_fire}});
-  demo.world.smoke.advance(240);  // it has burnt for four minutes
+  if (params.fire) {
+    demo.world.smoke = SmokeField(demo.world.walls, SmokeParams{}, {SmokeSource{demo.p_world_fire}});
+    demo.world.smoke.advance(params.burning_s);
+  }
   const Way& goal = choose_goal(ways, demo.world.smoke, demo.world.walls, start);
   demo.far_room = demo.building.rooms[static_cast<std::size_t>(goal.room)].name;
   demo.p_world_far_room = goal.path.back();
@@ -115,9 +136,9 @@ Result<DemoScenario> make_demo(std::uint64_t seed) {
   random = random_stream(seed, kStartStream);
   demo.true_start = point_at(demo, demo.T_world_start);
   demo.start = demo.true_start;
-  const double finger_px = 0.15 / demo.picture.metres_per_pixel;
+  const double finger_px = params.sigma_start_m / demo.picture.metres_per_pixel;
   demo.start.layout_px += Point2(normal(random, finger_px), normal(random, finger_px));
-  demo.start.heading_rad = wrap_angle(demo.start.heading_rad + normal(random, radians(3)));
+  demo.start.heading_rad = wrap_angle(demo.start.heading_rad + normal(random, params.sigma_start_rad));
   return demo;
 }
 

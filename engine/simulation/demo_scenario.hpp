@@ -7,6 +7,7 @@
 #include "simulation/building.hpp"
 #include "simulation/plan_distortion.hpp"
 #include "simulation/plan_picture.hpp"
+#include "simulation/random_building.hpp"
 #include "simulation/simulated_robot.hpp"
 
 namespace smokemap {
@@ -40,8 +41,22 @@ struct DemoScenario {
   Point2 to_map(const Point2& p_world) const { return T_world_start.inverse() * p_world; }
 };
 
-/// The same seed gives the same demo, byte for byte. Takes about 0.3 s.
-Result<DemoScenario> make_demo(std::uint64_t seed = kDemoSeed);
+/// Variations of the demo, for measuring.
+struct DemoParams {
+  RandomBuildingParams building = demo_building();
+  PlanDistortionParams distortion = demo_distortion();
+  bool fire = true;
+  double burning_s = 240;           ///< before the robot comes
+  double sigma_start_m = 0.15;      ///< of the start hint, per coordinate
+  double sigma_start_rad = 0.05;
+  Result<Ok> validate() const;
+
+  static RandomBuildingParams demo_building();     ///< a little furniture
+  static PlanDistortionParams demo_distortion();   ///< one wall missing, one phantom
+};
+
+/// The same seed gives the same demo, byte for byte. Takes about 0.15 s. kInvalidArgument for bad parameters.
+Result<DemoScenario> make_demo(std::uint64_t seed = kDemoSeed, const DemoParams& params = {});
 
 /// The robot of the demo at its start.
 SimulatedRobotParams demo_robot_params(const DemoScenario& demo);

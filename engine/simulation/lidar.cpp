@@ -128,14 +128,14 @@ SimulatedScan simulate_scan(const SegmentWorld& world, const SmokeField& smoke, 
   scan.stamp = stamp;
   scan.angle_min_rad = params.angle_min_rad;
   scan.angle_increment_rad = params.field_of_view_rad / params.beams;
-  scan.time_increment_s = params.turn_s / params.beams;
+  scan.time_increment_s = params.skew ? params.turn_s / params.beams : 0.0;
   scan.range_min_m = params.range_min_m;
   scan.range_max_m = params.range_max_m;
   scan.T_robot_laser = params.T_robot_laser;
   const float nothing = no_echo_value(params);
   std::vector<SmokePiece> pieces;
   for (int i = 0; i < params.beams; ++i) {
-    const double share = params.turn_s > 0 ? static_cast<double>(i) / params.beams : 0.0;
+    const double share = params.skew ? static_cast<double>(i) / params.beams : 0.0;
     const Pose2 T_world_laser = interpolate(T_world_start, T_world_end, share) * params.T_robot_laser;
     const double angle = T_world_laser.heading() + scan.angle_min_rad + i * scan.angle_increment_rad;
     const Beam beam = shoot(world, smoke, T_world_laser.translation(), angle, params, pieces, random);

@@ -18,7 +18,8 @@ struct LidarParams {
   double field_of_view_rad = 2 * 3.14159265358979323846;
   double range_min_m = 0.08;
   double range_max_m = 15.0;
-  double turn_s = 0.1;               ///< all beams; 0 = at once, no skew
+  double turn_s = 0.1;               ///< from the first beam to the next turn's first
+  bool skew = true;                  ///< false: all beams at the moment of the stamp
   double sigma_range_m = 0.01;
   double dropout = 0.005;            ///< share of echoes lost in clear air
   double beam_width_rad = 0.003;     ///< mixed ranges at edges

@@ -50,6 +50,10 @@ RobotOutput SimulatedRobot::step(const SimulatedWorld& world) {
   }
   if (params_.with_lidar && now_ - scan_start_ >= from_seconds(params_.lidar.turn_s)) {
     auto random = random_stream(params_.seed, params_.index, kLidarStream, scans_++);
+    if (!params_.lidar.skew) {
+      scan_start_ = now_;
+      T_world_scan_start_ = true_pose();
+    }
     SimulatedScan turn = simulate_scan(world.walls, world.smoke, T_world_scan_start_, true_pose(), scan_start_,
                                        params_.lidar, random);
     turn.scan.robot = params_.name;

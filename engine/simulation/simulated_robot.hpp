@@ -43,7 +43,7 @@ struct RobotOutput {
 };
 
 /// A robot on an integer clock of 10 ms steps. Same seed, index and commands at the same steps: the same bytes.
-/// A scan is delivered when its turn ends, stamped with its first beam. Truth is separate: nothing of it is in the output.
+/// A scan is delivered when its turn ends, stamped with its first beam (without skew: taken and stamped there). Truth is separate: nothing of it is in the output.
 class SimulatedRobot {
  public:
   static constexpr Stamp kStep = 10'000'000;
