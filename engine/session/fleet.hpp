@@ -39,7 +39,7 @@ struct PoseReport {
   double sigma_rad = 0;
   bool localized = false;
   double speed_mps = 0;
-  std::vector<Point2> obstacles_robot;  ///< echoes of the latest scan that the scan before confirms
+  std::vector<Point2> obstacles_robot;  ///< what stands near, smoke left out (ObstacleWatch)
 };
 
 /// Robots, their goals and their exploring. No threads, no clock of its own.

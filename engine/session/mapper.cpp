@@ -1,30 +1,8 @@
 #include "session/mapper.hpp"
 
 #include <cmath>
-#include <unordered_set>
 
 namespace smokemap {
-namespace {
-
-constexpr double kConfirmM = 0.12;
-
-std::int64_t bucket(double x, double y) {
-  return static_cast<std::int64_t>(std::floor(x / kConfirmM)) * 1'000'003 + static_cast<std::int64_t>(std::floor(y / kConfirmM));
-}
-
-}  // namespace
-
-std::vector<Point2> confirmed_hits(const std::vector<Point2>& hits, const std::vector<Point2>& before) {
-  std::unordered_set<std::int64_t> taken;
-  for (const Point2& p : before)
-    for (int dx = -1; dx <= 1; ++dx)
-      for (int dy = -1; dy <= 1; ++dy) taken.insert(bucket(p.x() + dx * kConfirmM, p.y() + dy * kConfirmM));
-  std::vector<Point2> confirmed;
-  for (const Point2& p : hits)
-    if (taken.contains(bucket(p.x(), p.y()))) confirmed.push_back(p);
-  return confirmed;
-}
-
 Mapper::Track& Mapper::track_of(const std::string& robot) {
   if (map_maker_.empty()) map_maker_ = robot;
   return tracks_.try_emplace(robot).first->second;
@@ -57,17 +35,15 @@ std::optional<PoseReport> Mapper::add(const SensorItem& item) {
   if (const auto* sweep = std::get_if<RadarSweep>(&item)) {
     Track& track = track_of(sweep->robot);
     (void)track.slam.add_sweep(*sweep);
+    track.watch.add_sweep(*sweep, track.T_odom_robot);
     return std::nullopt;
   }
   const auto& scan = std::get<LaserScan>(item);
   Track& track = track_of(scan.robot);
   auto made = report(scan.robot, track, track.slam.add_scan(scan));
   if (!made) return made;
-  std::vector<Point2> hits_odom;
-  for (const Point2& p : hit_points(scan, {})) hits_odom.push_back(track.T_odom_robot * (scan.T_robot_laser * p));
-  const Pose2 T_robot_odom = track.T_odom_robot.inverse();
-  for (const Point2& p : confirmed_hits(hits_odom, track.last_hits_odom)) made->obstacles_robot.push_back(T_robot_odom * p);
-  track.last_hits_odom = std::move(hits_odom);
+  track.watch.add_scan(scan, track.T_odom_robot);
+  made->obstacles_robot = track.watch.obstacles_robot();
   return made;
 }
 

@@ -9,6 +9,7 @@
 #include "maps/laser_scan.hpp"
 #include "maps/odometry.hpp"
 #include "maps/radar_sweep.hpp"
+#include "navigation/obstacle_watch.hpp"
 #include "session/fleet.hpp"
 #include "slam/slam.hpp"
 
@@ -32,7 +33,7 @@ class Mapper {
  private:
   struct Track {
     Slam slam;
-    std::vector<Point2> last_hits_odom;
+    ObstacleWatch watch;
     Pose2 T_odom_robot;
     double speed_mps = 0;
   };
@@ -45,8 +46,5 @@ class Mapper {
   bool changed_ = false;
   std::shared_ptr<const PoseGraph> graph_ = std::make_shared<const PoseGraph>();
 };
-
-/// Of `hits`, those with one of `before` within 0.12 m: a false echo in smoke is rarely repeated in place.
-std::vector<Point2> confirmed_hits(const std::vector<Point2>& hits, const std::vector<Point2>& before);
 
 }  // namespace smokemap
