@@ -27,6 +27,7 @@ double plan_confidence(const PlanFit& fit) {
 Transferred Carrier::to_map(const Place& place) const {
   switch (place.frame) {
     case PlaceFrame::kMap: {
+      if (place.revision == kEarlierMap) return nowhere("it was placed on a robot's map of before the restart");
       Transferred t;
       t.p = place.p, t.sigma = kTapSigmaM, t.confidence = 1;
       return t;

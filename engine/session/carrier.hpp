@@ -5,6 +5,9 @@
 
 namespace smokemap {
 
+/// Revision of a place on a robot's map of an earlier run: that map is gone.
+constexpr int kEarlierMap = -1;
+
 /// Carries places from the map in which somebody pointed to `map`, with everything that is uncertain about it.
 /// Holds references: make one, ask, throw it away.
 class Carrier {

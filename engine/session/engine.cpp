@@ -57,6 +57,11 @@ class Engine::Impl {
     queue_ready_.notify_one();
   }
 
+  std::optional<Point2> place_on_plan(const Point2& p_map) const {
+    const std::lock_guard lock(core_mutex_);
+    return core_.place_on_plan(p_map);
+  }
+
   std::shared_ptr<const Snapshot> snapshot() const {
     const std::lock_guard lock(snapshot_mutex_);
     return snapshot_;
@@ -211,6 +216,7 @@ Result<Ok> Engine::apply(const Command& command, Origin origin) { return impl_->
 void Engine::add_scan(const LaserScan& scan) { impl_->push(scan); }
 void Engine::add_sweep(const RadarSweep& sweep) { impl_->push(sweep); }
 void Engine::add_odometry(const Odometry& odometry) { impl_->push(odometry); }
+std::optional<Point2> Engine::place_on_plan(const Point2& p_map) const { return impl_->place_on_plan(p_map); }
 std::shared_ptr<const Snapshot> Engine::snapshot() const { return impl_->snapshot(); }
 void Engine::on_snapshot(SnapshotListener listener) { impl_->on_snapshot(std::move(listener)); }
 std::size_t Engine::dropped() const { return impl_->dropped(); }

@@ -43,6 +43,9 @@ class Engine {
   void add_sweep(const RadarSweep& sweep);
   void add_odometry(const Odometry& odometry);
 
+  /// The pixel of the plan (layout_px) under a place on the map; nothing while no plan is aligned, or the plan does not fit.
+  std::optional<Point2> place_on_plan(const Point2& p_map) const;
+
   /// The latest; never null.
   std::shared_ptr<const Snapshot> snapshot() const;
   /// Called from the steering thread for every new snapshot; must be quick. One listener; set before data comes in.

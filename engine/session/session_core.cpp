@@ -20,6 +20,10 @@ Result<Ok> SessionCore::apply(const Command& command, Origin origin) {
   if (board_.revisions.layout_frame != frame_before) start_.reset(), start_is_old_ = false;
   if (const auto* start = std::get_if<SetStart>(&command)) return note_start(*start, origin);
   if (const auto* stop = std::get_if<EmergencyStop>(&command); stop && stop->engaged) fleet_.stop_now(stop->robot);
+  if (const auto* set = std::get_if<PlacePoi>(&command); set && origin == Origin::kHistory) {
+    Place& place = board_.pois.at(set->poi.id).place;
+    if (place.frame == PlaceFrame::kMap) place.revision = kEarlierMap;
+  }
   if (const auto* set = std::get_if<SetGoal>(&command); set && origin == Origin::kHistory) {
     Goal* goal = board_.find_goal(set->goal.id);
     if (goal && !is_final(goal->state)) {
@@ -61,6 +65,12 @@ void SessionCore::take(const MergeResult& result, const std::string& map_maker) 
 
 SessionCore::SketchOrder SessionCore::sketch_order() const {
   return {board_.revisions.sketch, board_.sketch(), board_.layout, board_.pair_verdicts};
+}
+
+std::optional<Point2> SessionCore::place_on_plan(const Point2& p_map) const {
+  if (!board_.layout || merged_->corners.empty() || merged_->fit.verdict == "does not fit" || !p_map.allFinite())
+    return std::nullopt;
+  return board_.layout->layout.frame().to_pixels(merged_->layout_to_map.inverse(p_map));
 }
 
 std::vector<Alert> SessionCore::alerts() const {

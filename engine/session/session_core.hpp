@@ -45,6 +45,7 @@ class SessionCore {
   void take(SketchReading reading) { sketch_ = std::move(reading); }
 
   Snapshot snapshot(Stamp now) const;
+  std::optional<Point2> place_on_plan(const Point2& p_map) const;
 
  private:
   Result<Ok> note_start(const SetStart& start, Origin origin);

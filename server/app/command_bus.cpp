@@ -36,6 +36,21 @@ Result<Ok> for_each_event(Store& store, std::optional<std::int64_t> last, const 
   }
 }
 
+/// A place pointed at on the merged map is kept on the plan where there is one: the robot's frame ends with this run, and a
+/// bottle stored in it would be shown in the wrong room after a restart.
+CommandMessage kept_on_plan(const EnginePort& engine, CommandMessage message) {
+  Json& data = message.data;
+  if (message.name != "place_poi" && message.name != "set_goal") return message;
+  if (!data.is_object() || data.value("frame", Json()) != "map") return message;
+  const auto p_map = point_of(data.value("p", Json()));
+  if (!p_map) return message;
+  if (const auto p_px = engine.place_on_plan(*p_map)) {
+    data["frame"] = "layout_px";
+    data["p"] = {p_px->x(), p_px->y()};
+  }
+  return message;
+}
+
 bool is_refused(const Event& event) { return event.outcome.starts_with("refused"); }
 
 /// "refused: not_found: no robot called r9" -> code and message.
@@ -155,7 +170,8 @@ std::optional<CommandReply> CommandBus::earlier_answer(const Job& job) {
   return reply_of(**earlier);
 }
 
-CommandReply CommandBus::carry_out(const Job& job) {
+CommandReply CommandBus::carry_out(const Job& asked) {
+  const Job job{asked.who, kept_on_plan(engine_, asked.message), {}};
   const CommandMessage& message = job.message;
   const std::int64_t now_ms = clock_->now() / 1'000'000;
   const auto command = command_from_json(message.name, message.data, {job.who.name, now_ms * 1'000'000});

@@ -96,6 +96,7 @@ struct Server::Impl {
     });
     engine.on_snapshot([gate = gate](std::shared_ptr<const Snapshot> snapshot) { (*gate)(std::move(snapshot)); });
     if (auto now = engine.snapshot()) hub->show(std::move(now));
+    engine.begin_live();
     bus->start();
     return Ok{};
   }

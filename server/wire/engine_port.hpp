@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "session/engine.hpp"
 
@@ -19,6 +20,10 @@ class EnginePort {
   virtual std::shared_ptr<const Snapshot> snapshot() const = 0;
   /// Called from the engine's thread for every new snapshot. One listener, which returns at once.
   virtual void on_snapshot(Listener listener) = 0;
+  /// The stored log was replayed: from here on commands are acts of people who see the present.
+  virtual void begin_live() {}
+  /// The pixel of the plan under a place on the merged map; nothing while no plan is aligned there.
+  virtual std::optional<Point2> place_on_plan(const Point2& /*p_map*/) const { return std::nullopt; }
 };
 
 /// The real one.
