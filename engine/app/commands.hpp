@@ -25,5 +25,6 @@ void add_convert(CLI::App& app, Outcome& outcome);
 void add_layout(CLI::App& app, Outcome& outcome);
 void add_sketch(CLI::App& app, Outcome& outcome);
 void add_merge(CLI::App& app, Outcome& outcome);
+void add_serve(CLI::App& app, Outcome& outcome);
 
 }  // namespace smokemap::app

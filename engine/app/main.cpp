@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   Outcome outcome;
   app.add_flag("--json", outcome.json, "also print errors as JSON on standard output");
+  add_serve(app, outcome);
   add_segment(app, outcome);
   add_match(app, outcome);
   add_convert(app, outcome);

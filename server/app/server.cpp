@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+#include <future>
 #include <iostream>
 #include <mutex>
 #include <thread>
@@ -96,7 +97,6 @@ struct Server::Impl {
     });
     engine.on_snapshot([gate = gate](std::shared_ptr<const Snapshot> snapshot) { (*gate)(std::move(snapshot)); });
     if (auto now = engine.snapshot()) hub->show(std::move(now));
-    engine.begin_live();
     bus->start();
     return Ok{};
   }
@@ -168,6 +168,26 @@ Result<Ok> Server::start() {
 }
 
 void Server::stop() { impl_->stop(); }
+
+Result<Json> Server::post(const std::string& path, std::string body) {
+  Request request;
+  request.method = Method::kPost;
+  request.path = path;
+  request.host = impl_->options.address + ":" + std::to_string(impl_->port);
+  request.local_address = impl_->options.address;
+  request.local_port = impl_->port;
+  request.from_loopback = true;
+  request.who = Identity{"server", "server", Role::kCommander};
+  request.body = std::move(body);
+  const Admission admission = impl_->service->admit(request);
+  if (admission.refusal) return fail(Errc::kForbidden, admission.refusal->body ? *admission.refusal->body : path + " was refused");
+  auto answered = std::make_shared<std::promise<Response>>();
+  impl_->service->handle(admission, std::move(request), [answered](Response response) { answered->set_value(std::move(response)); });
+  const Response response = answered->get_future().get();
+  const std::string text = response.body ? *response.body : std::string("{}");
+  if (response.status >= 400) return fail(Errc::kInvalidArgument, text);
+  return parse_json(text, {64 * 1024 * 1024, 64});
+}
 
 std::uint16_t Server::port() const { return impl_->port; }
 

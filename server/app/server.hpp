@@ -10,6 +10,7 @@
 #include "server/http/net_server.hpp"
 #include "server/http/picture_service.hpp"
 #include "server/wire/engine_port.hpp"
+#include "server/wire/json.hpp"
 #include "server/ws/live_session.hpp"
 
 namespace smokemap::server {
@@ -42,6 +43,10 @@ class Server {
   /// Opens the store, replays the log into the engine, listens. Errors are for people: damaged log, folder, port.
   Result<Ok> start();
   void stop();
+
+  /// A POST below /api as the machine itself, with a commander's rights: how the demo sets itself up, by the same way as
+  /// everybody else. After `start`; waits for the answer.
+  Result<Json> post(const std::string& path, std::string body);
 
   std::uint16_t port() const;
   std::string url() const;         ///< "http://127.0.0.1:8080/"

@@ -20,8 +20,6 @@ class EnginePort {
   virtual std::shared_ptr<const Snapshot> snapshot() const = 0;
   /// Called from the engine's thread for every new snapshot. One listener, which returns at once.
   virtual void on_snapshot(Listener listener) = 0;
-  /// The stored log was replayed: from here on commands are acts of people who see the present.
-  virtual void begin_live() {}
   /// The pixel of the plan under a place on the merged map; nothing while no plan is aligned there.
   virtual std::optional<Point2> place_on_plan(const Point2& /*p_map*/) const { return std::nullopt; }
 };
@@ -33,6 +31,7 @@ class EngineAdapter final : public EnginePort {
   Result<Ok> apply(const Command& command, Origin origin) override { return engine_.apply(command, origin); }
   std::shared_ptr<const Snapshot> snapshot() const override { return engine_.snapshot(); }
   void on_snapshot(Listener listener) override { engine_.on_snapshot(std::move(listener)); }
+  std::optional<Point2> place_on_plan(const Point2& p_map) const override { return engine_.place_on_plan(p_map); }
 
  private:
   Engine& engine_;
