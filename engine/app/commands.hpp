@@ -22,6 +22,7 @@ void add_segment(CLI::App& app, Outcome& outcome);
 void add_simulate(CLI::App& app, Outcome& outcome);
 void add_match(CLI::App& app, Outcome& outcome);
 void add_convert(CLI::App& app, Outcome& outcome);
+void add_robot(CLI::App& app, Outcome& outcome);
 void add_layout(CLI::App& app, Outcome& outcome);
 void add_sketch(CLI::App& app, Outcome& outcome);
 void add_merge(CLI::App& app, Outcome& outcome);

@@ -28,6 +28,7 @@ int run(int argc, char** argv) {
   add_segment(app, outcome);
   add_match(app, outcome);
   add_convert(app, outcome);
+  add_robot(app, outcome);
   add_layout(app, outcome);
   add_simulate(app, outcome);
   add_sketch(app, outcome);
