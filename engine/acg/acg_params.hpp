@@ -8,10 +8,9 @@ namespace smokemap {
 struct AcgParams {
   // What a drawn plan is worth.
   double sigma_wall_log_length = 0.10;  ///< a wall may be drawn 10 % too long or short
-  double sigma_wall_turn_rad = 0.026;   ///< against the turn of the whole plan
+  double sigma_wall_turn_rad = 0.01;    ///< against the turn of the whole plan, besides the error of its corners
   double sigma_corner_draw_m = 0.05;    ///< how far a corner is off its drawn line
   double stretch_length_m = 4.0;        ///< over this length the local stretch changes
-  double sigma_scale_log = 0.10;        ///< of the plan's metres per pixel, as a whole
 
   // What a sensor saw.
   double sigma_point_m = 0.03;          ///< lidar point to wall face

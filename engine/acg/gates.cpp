@@ -32,7 +32,7 @@ double plan_tension(const PlanModel& plan, const GraphState& state, const AcgPar
     const Segment2 now = state.segment(wall);
     const Point2 d = Pose2(0, 0, -state.turn - wall.heading_rad) * Point2(now.b - now.a);
     sum += std::pow((d.x() - wall.length_m) / std::hypot(params.sigma_wall_log_length * wall.length_m, corners), 2) +
-           std::pow(d.y() / std::hypot(0.01 * wall.length_m, corners), 2);
+           std::pow(d.y() / std::hypot(params.sigma_wall_turn_rad * wall.length_m, corners), 2);
   }
   return sum / static_cast<double>(std::max<std::size_t>(1, plan.walls.size()));
 }
@@ -43,7 +43,7 @@ std::vector<bool> tense_walls(const PlanModel& plan, const GraphState& state, co
     const Segment2 now = state.segment(wall);
     const double heading = state.turn + wall.heading_rad;
     const double across = -std::sin(heading) * (now.b - now.a).x() + std::cos(heading) * (now.b - now.a).y();
-    tense.push_back(std::abs(across) > 3 * std::hypot(0.01 * wall.length_m, std::sqrt(2.0) * params.sigma_corner_draw_m));
+    tense.push_back(std::abs(across) > 3 * std::hypot(params.sigma_wall_turn_rad * wall.length_m, std::sqrt(2.0) * params.sigma_corner_draw_m));
   }
   return tense;
 }
@@ -52,9 +52,8 @@ bool mature(const PlanEdge& wall, double linked_m, const AcgParams& params) {
   return linked_m >= std::min(params.mature_m, std::max(0.15, 0.3 * wall.length_m));
 }
 
-std::vector<double> wall_gates_m(const PlanModel& plan, const GraphState& state, const std::vector<WallState>& walls,
+std::vector<double> wall_gates_m(const PlanModel& plan, const std::vector<WallState>& walls,
                                  const std::vector<double>& linked_m, const AcgParams& params) {
-  static_cast<void>(state);
   std::vector<std::size_t> known;
   for (std::size_t w = 0; w < walls.size(); ++w)
     if (walls[w] == WallState::kConfirmed && linked_m[w] > 0.5) known.push_back(w);

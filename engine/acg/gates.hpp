@@ -11,7 +11,7 @@ namespace smokemap {
 /// How far each wall may be from where it is expected: little beside walls that are known already, more the farther away
 /// the nearest known wall of its direction is (the plan may be stretched in between).
 /// Cost: walls squared.
-std::vector<double> wall_gates_m(const PlanModel& plan, const GraphState& state, const std::vector<WallState>& walls,
+std::vector<double> wall_gates_m(const PlanModel& plan, const std::vector<WallState>& walls,
                                  const std::vector<double>& linked_m, const AcgParams& params);
 
 /// Walls that their links hold in a place that the plan finds hard to believe: turned by more than three sigma.

@@ -22,7 +22,6 @@ namespace {
 
 constexpr double kSigmaAnchor_m = 0.05;
 constexpr double kUnmodelled_m = 0.025;  ///< drawn wall thickness against the true one, bias of the sensor
-constexpr double kAcrossShare = 0.01;    ///< of its length a wall may stand off its direction, besides its corners' own error
 
 /// A weight that does not depend on the residual: the robust scheme sets it between solves.
 ceres::LossFunction* weighted(double weight) { return new ceres::ScaledLoss(nullptr, weight, ceres::TAKE_OWNERSHIP); }
@@ -96,7 +95,7 @@ class ProblemBuilder {
     const double corners = std::sqrt(2.0) * params_.sigma_corner_draw_m;
     problem.AddResidualBlock(
         WallShapeCost::Create(edge.length_m, edge.heading_rad, std::hypot(along_share * edge.length_m, corners),
-                              std::hypot(kAcrossShare * edge.length_m, corners)),
+                              std::hypot(params_.sigma_wall_turn_rad * edge.length_m, corners)),
         weighted(firmness), corner(edge.corner_a), corner(edge.corner_b), blocks_.turn(), blocks_.log_scale());
   }
 

@@ -116,7 +116,7 @@ bool find_end(const std::vector<Reading>& all, const Sight& sight, const std::ve
 }
 
 /// The nearest nodes' opinions on each corner, without those that contradict their median.
-std::vector<EndLink> best_ends(std::vector<EndLink>& all, const GraphState& state) {
+std::vector<EndLink> best_ends(const std::vector<EndLink>& all) {
   std::map<std::pair<int, int>, std::vector<EndLink>> by_corner;
   for (const EndLink& e : all) by_corner[{e.corner, e.wall}].push_back(e);
   std::vector<EndLink> out;
@@ -133,7 +133,6 @@ std::vector<EndLink> best_ends(std::vector<EndLink>& all, const GraphState& stat
     ends.resize(std::min(ends.size(), kEndsPerCorner));
     out.insert(out.end(), ends.begin(), ends.end());
   }
-  static_cast<void>(state);
   return out;
 }
 
@@ -152,7 +151,7 @@ double WallEvidence::through_m() const {
 }
 
 BeamReading read_beams(const std::vector<NodeView>& views, const std::vector<bool>& use_node, const PlanModel& plan,
-                       const GraphState& state, const std::vector<double>& end_gate_m, const AcgParams& params) {
+                       const GraphState& state, const std::vector<double>& end_gate_m) {
   BeamReading out;
   std::vector<Segment2> walls;
   for (const PlanEdge& w : plan.walls) {
@@ -165,7 +164,6 @@ BeamReading read_beams(const std::vector<NodeView>& views, const std::vector<boo
     evidence.bin_m = length / static_cast<double>(bins);
     out.walls.push_back(evidence);
   }
-  static_cast<void>(params);
   std::vector<EndLink> ends;
   for (std::size_t node = 0; node < views.size(); ++node) {
     if (!use_node[node]) continue;
@@ -197,7 +195,7 @@ BeamReading read_beams(const std::vector<NodeView>& views, const std::vector<boo
       }
     }
   }
-  out.ends = best_ends(ends, state);
+  out.ends = best_ends(ends);
   return out;
 }
 

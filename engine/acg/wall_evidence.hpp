@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "acg/acg_params.hpp"
 #include "acg/graph_state.hpp"
 #include "acg/scan_pieces.hpp"
 
@@ -29,6 +28,6 @@ struct BeamReading {
 /// @param end_gate_m per wall: an end farther from where the plan has it is not its end
 /// Cost: for each node and wall in reach the beams in its sector.
 BeamReading read_beams(const std::vector<NodeView>& views, const std::vector<bool>& use_node, const PlanModel& plan,
-                       const GraphState& state, const std::vector<double>& end_gate_m, const AcgParams& params);
+                       const GraphState& state, const std::vector<double>& end_gate_m);
 
 }  // namespace smokemap

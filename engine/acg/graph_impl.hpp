@@ -1,0 +1,64 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acg/auto_complete_graph.hpp"
+#include "acg/first_alignment.hpp"
+#include "acg/node_store.hpp"
+#include "acg/read_out.hpp"
+#include "acg/solver.hpp"
+
+namespace smokemap {
+
+/// A pair that a person vouches for.
+struct GraphAnchor {
+  Point2 p_px = Point2::Zero(), p_map = Point2::Zero();
+};
+
+/// The works of the Auto-Complete Graph: how it begins (graph_start.cpp), a round of linking and solving
+/// (graph_rounds.cpp), an update as a whole (auto_complete_graph.cpp).
+class AutoCompleteGraph::Impl {
+ public:
+  explicit Impl(const AcgParams& p) : params(p), nodes(p) {}
+
+  /// What a failed update must not change is kept here and copied.
+  struct Learnt {
+    GraphState state;
+    bool aligned = false;
+    double taken_way_m = 0;
+    std::vector<WallState> walls;
+    std::vector<double> linked_m, near_m;  ///< per wall: length with pieces on it, within its gate
+    std::vector<double> sigma_m;
+    int updates = 0;
+  };
+
+  Result<MergedMap> update(const PoseGraph& graph, const Progress& progress);
+  bool align(Learnt& learnt) const;
+  void choose(const std::vector<PlanAlignment>& found, Learnt& learnt) const;
+  double first_metres_explained(Learnt trial) const;
+  void put_down(const PlanPlacement& placement, Learnt& learnt) const;
+  Result<Ok> take_up(Learnt& learnt, const Progress& progress) const;
+  Result<Ok> release_tense(Learnt& learnt, const SolveInput& input, const Progress& progress) const;
+  Result<Ok> round(Learnt& learnt, const std::vector<bool>& use, double sharpness, bool poses_fixed,
+                   const Progress& progress, SolveInput* kept) const;
+  SolveInput make_input(const Learnt& learnt, bool poses_fixed) const;
+  std::vector<AnchorLink> anchor_links() const;
+  void judge_walls(const std::vector<WallEvidence>& evidence, Learnt& learnt) const;
+  MergedMap read_out(const PoseGraph& graph, const SolveInput& input, Learnt& learnt) const;
+  PlanFit plan_fit(const SolveInput& input, const Learnt& learnt) const;
+
+  AcgParams params;
+  NodeStore nodes;
+  LayoutMap layout;
+  std::optional<PlanModel> plan;
+  std::optional<PlanStart> start;
+  std::map<std::string, GraphAnchor> anchors;
+  std::map<int, WallJudgement> judgements;
+  Learnt learnt;
+  int revision = 0;
+};
+
+}  // namespace smokemap
