@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -10,7 +9,9 @@
 #include "app/commands.hpp"
 #include "app/layout_preview.hpp"
 #include "layout/read_layout.hpp"
+#include "recording/file_bytes.hpp"
 #include "recording/layout_json.hpp"
+#include "recording/picture_file.hpp"
 
 namespace smokemap::app {
 namespace {
@@ -21,6 +22,7 @@ struct LayoutArguments {
   std::string preview;
   std::vector<double> corners;
   double metres_per_pixel = 0;
+  int page = 1;
 };
 
 /// The document as written: `corners` lists places where walls of different directions meet. Ends of walls at doors follow from
@@ -53,11 +55,15 @@ void run_layout(const LayoutArguments& arguments, Outcome& outcome) {
     options.sheet_corners_px = corners;
   }
   if (arguments.metres_per_pixel != 0) options.metres_per_pixel = arguments.metres_per_pixel;
-  const cv::Mat picture = cv::imread(arguments.picture);
-  const auto reading = read_layout(picture, options);
+  const auto bytes = read_file(arguments.picture, PictureLimits{}.max_bytes);
+  if (!bytes) return outcome.no_answer(bytes.error());
+  const auto picture = decode_picture(*bytes, {}, arguments.page - 1);
+  if (!picture) return outcome.no_answer(picture.error());
+  const auto reading = read_layout(*picture, options);
   if (!reading) return outcome.no_answer(reading.error());
-  std::ofstream(arguments.output) << document(*reading) << '\n';
-  if (!arguments.preview.empty()) cv::imwrite(arguments.preview, draw_layout(reading->rectified, reading->layout));
+  if (const auto written = write_file(arguments.output, document(*reading) + "\n"); !written) return outcome.no_answer(written.error());
+  if (!arguments.preview.empty() && !cv::imwrite(arguments.preview, draw_layout(reading->rectified, reading->layout)))
+    outcome.no_answer(fail(Errc::kIo, "cannot write " + arguments.preview));
 }
 
 }  // namespace
@@ -70,6 +76,7 @@ void add_layout(CLI::App& app, Outcome& outcome) {
   command->add_option("--preview", arguments->preview, "PNG with the reading over the picture");
   command->add_option("--corners", arguments->corners, "sheet corners in the picture, clockwise from top left: x1,y1,...,x4,y4")->delimiter(',')->expected(8);
   command->add_option("--metres-per-pixel", arguments->metres_per_pixel, "of the rectified picture, if it is known");
+  command->add_option("--page", arguments->page, "page of a PDF, from 1")->check(CLI::Range(1, 10000));
   command->callback([arguments, &outcome] { run_layout(*arguments, outcome); });
 }
 

@@ -1,7 +1,6 @@
 #include <cmath>
-#include <fstream>
+#include <cstdint>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -10,6 +9,8 @@
 #include <vector>
 
 #include "app/commands.hpp"
+#include "recording/file_bytes.hpp"
+#include "recording/picture_file.hpp"
 #include "sketch/clean_sketch.hpp"
 #include "sketch/read_sketch_photo.hpp"
 
@@ -43,8 +44,10 @@ Result<SketchMap> sketch_from_json(const std::string& text) {
   }
 }
 
-Result<SketchMap> sketch_from_photo(const cv::Mat& picture, std::vector<std::string>& warnings) {
-  const auto photo = read_sketch_photo(picture);
+Result<SketchMap> sketch_from_photo(const std::vector<std::uint8_t>& bytes, std::vector<std::string>& warnings) {
+  const auto picture = decode_picture(bytes);
+  if (!picture) return picture.error();
+  const auto photo = read_sketch_photo(*picture);
   if (!photo) return photo.error();
   warnings = photo->warnings;
   return SketchMap{photo->width_px, photo->height_px, photo->strokes};
@@ -66,12 +69,13 @@ cv::Mat draw_sketch(const SketchMap& sketch, const CleanSketch& clean) {
 }
 
 void run_sketch(const SketchArguments& arguments, Outcome& outcome) {
-  std::ifstream file(arguments.input, std::ios::binary);
-  if (!file) return outcome.no_answer(fail(Errc::kIo, "cannot read " + arguments.input));
-  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  const auto first = bytes.find_first_not_of(" \t\r\n");
+  const auto bytes = read_file(arguments.input, PictureLimits{}.max_bytes);
+  if (!bytes) return outcome.no_answer(bytes.error());
+  const std::string text(bytes->begin(), bytes->end());
+  const auto first = text.find_first_not_of(" \t\r\n");
+  const bool is_json = first != std::string::npos && text[first] == '{';
   std::vector<std::string> warnings;
-  const auto sketch = first != std::string::npos && bytes[first] == '{' ? sketch_from_json(bytes) : sketch_from_photo(cv::imread(arguments.input), warnings);
+  const auto sketch = is_json ? sketch_from_json(text) : sketch_from_photo(*bytes, warnings);
   if (!sketch) return outcome.no_answer(sketch.error());
   SketchParams params;
   params.max_sheet_megapixels = 40;
