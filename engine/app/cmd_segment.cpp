@@ -16,7 +16,6 @@ namespace {
 struct SegmentArguments {
   std::string picture, output, regions, preview, topology;
   MapKind kind = MapKind::kRobot;
-  SegmentationMethod method = SegmentationMethod::kConstriction;
 };
 
 nlohmann::json pair_of(const Point2& p) { return {p.x(), p.y()}; }
@@ -47,7 +46,7 @@ Result<Ok> segment_picture(const SegmentArguments& arguments) {
   if (!picture) return picture.error();
   const Result<cv::Mat> free_space = free_space_of_picture(*picture);
   if (!free_space) return free_space.error();
-  const Result<Segmentation> segmentation = segment(*free_space, segmentation_params(arguments.kind, arguments.method));
+  const Result<Segmentation> segmentation = segment(*free_space, segmentation_params(arguments.kind));
   if (!segmentation) return segmentation.error();
   if (!arguments.topology.empty()) {
     const Result<VoronoiGraph> graph = voronoi_graph(*free_space);
@@ -79,9 +78,6 @@ void add_segment(CLI::App& app, Outcome& outcome) {
   command->add_option("--kind", arguments->kind, "what kind of map it is")
       ->transform(CLI::CheckedTransformer(std::map<std::string, MapKind>{
           {"sketch", MapKind::kSketch}, {"robot", MapKind::kRobot}, {"layout", MapKind::kLayout}}));
-  command->add_option("--method", arguments->method, "constriction (ours) or maoris (as published, ICRA 2018)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, SegmentationMethod>{
-          {"constriction", SegmentationMethod::kConstriction}, {"maoris", SegmentationMethod::kMaoris}}));
   command->callback([arguments, &outcome] {
     const Result<Ok> done = segment_picture(*arguments);
     if (!done) outcome.no_answer(done.error());

@@ -1,11 +1,13 @@
-// Rooms by peeling. The local thickness is nearly constant inside a room and inside a corridor. Starting from the thickest
-// place, a room is everything connected to it that is at least `door_ratio` as thick; then the thickest remaining place
-// starts the next room. Left over are corners, window recesses and door slots: pieces that are shallow compared with the
+// Rooms by peeling. The local thickness is nearly constant inside a room and inside a corridor. First, basins: two wide
+// places are parted where the clearance between them falls below `pinch_ratio` of the lesser one (a door). Then, within a
+// basin and from the thickest place on, a room is everything connected to it that is at least `step_ratio` as thick; the
+// thickest remaining place starts the next room (a corridor that opens into a hall has no door, only a step). Left over are corners, window recesses and door slots: pieces that are shallow compared with the
 // opening through which they hang on to a neighbour. They are given back to it, shallowest first.
 // Only ratios are used, so neither the resolution nor the largest hall matters.
 #include "segmentation/constriction.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -19,49 +21,89 @@
 namespace smokemap {
 namespace {
 
-/// Everything 4-connected to `seed`, not yet labelled and at least `least` thick, becomes `id`.
-void flood(const cv::Mat& thickness, cv::Point seed, float least, int id, cv::Mat& labels,
+constexpr std::array<std::array<int, 2>, 4> kSides = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+
+/// Pixels above zero, largest first (to 1/16 pixel), then row by row.
+std::vector<cv::Point> by_falling_value(const cv::Mat& image) {
+  double largest = 0;
+  cv::minMaxLoc(image, nullptr, &largest);
+  const auto bucket_of = [](float value) { return static_cast<size_t>(value * 16.0f); };
+  std::vector<std::vector<cv::Point>> buckets(bucket_of(static_cast<float>(largest)) + 1);
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.cols; ++x)
+      if (const float value = image.at<float>(y, x); value > 0) buckets[bucket_of(value)].emplace_back(x, y);
+  std::vector<cv::Point> order;
+  order.reserve(image.total());
+  for (auto bucket = buckets.rbegin(); bucket != buckets.rend(); ++bucket)
+    order.insert(order.end(), bucket->begin(), bucket->end());
+  return order;
+}
+
+/// Basins of the clearance that are more than `pinch_ratio` deep. CV_32SC1, 0 = not free.
+cv::Mat find_basins(const cv::Mat& clearance, const std::vector<cv::Point>& order, double pinch_ratio) {
+  cv::Mat basins(clearance.size(), CV_32SC1, cv::Scalar(0));
+  std::vector<int> parent(1, 0);
+  std::vector<float> peak(1, 0);
+  const auto root = [&](int id) {
+    while (parent[static_cast<size_t>(id)] != id) id = parent[static_cast<size_t>(id)] = parent[static_cast<size_t>(parent[static_cast<size_t>(id)])];
+    return id;
+  };
+  for (const cv::Point& p : order) {
+    const float here = clearance.at<float>(p);
+    int own = 0;
+    for (const auto& side : kSides) {
+      const cv::Point n(p.x + side[0], p.y + side[1]);
+      if (n.x < 0 || n.y < 0 || n.x >= basins.cols || n.y >= basins.rows || basins.at<int>(n) == 0) continue;
+      const int other = root(basins.at<int>(n));
+      if (own == 0 || own == other) {
+        own = other;
+        continue;
+      }
+      const int high = peak[static_cast<size_t>(own)] >= peak[static_cast<size_t>(other)] ? own : other;
+      const int low = high == own ? other : own;
+      if (here >= static_cast<float>(pinch_ratio) * peak[static_cast<size_t>(low)]) parent[static_cast<size_t>(low)] = high;
+      own = high;
+    }
+    if (own == 0) {
+      own = static_cast<int>(parent.size());
+      parent.push_back(own);
+      peak.push_back(here);
+    }
+    basins.at<int>(p) = own;
+  }
+  for (const cv::Point& p : order) basins.at<int>(p) = root(basins.at<int>(p));
+  return basins;
+}
+
+/// Everything 4-connected to `seed` in its basin, not yet labelled and at least `least` thick, becomes `id`.
+void flood(const cv::Mat& thickness, const cv::Mat& basins, cv::Point seed, float least, int id, cv::Mat& labels,
            std::vector<cv::Point>& stack) {
   stack.assign(1, seed);
   labels.at<int>(seed) = id;
+  const int basin = basins.at<int>(seed);
   while (!stack.empty()) {
     const cv::Point p = stack.back();
     stack.pop_back();
-    for (const cv::Point step : {cv::Point(1, 0), cv::Point(0, 1), cv::Point(-1, 0), cv::Point(0, -1)}) {
-      const cv::Point n = p + step;
+    for (const auto& side : kSides) {
+      const cv::Point n(p.x + side[0], p.y + side[1]);
       if (n.x < 0 || n.y < 0 || n.x >= labels.cols || n.y >= labels.rows) continue;
-      if (labels.at<int>(n) != 0 || thickness.at<float>(n) < least) continue;
+      if (labels.at<int>(n) != 0 || basins.at<int>(n) != basin || thickness.at<float>(n) < least) continue;
       labels.at<int>(n) = id;
       stack.push_back(n);
     }
   }
 }
 
-/// Free pixels, thickest first (to 1/16 pixel), then row by row.
-std::vector<cv::Point> by_falling_thickness(const cv::Mat& thickness) {
-  double largest = 0;
-  cv::minMaxLoc(thickness, nullptr, &largest);
-  const auto bucket_of = [](float value) { return static_cast<size_t>(value * 16.0f); };
-  std::vector<std::vector<cv::Point>> buckets(bucket_of(static_cast<float>(largest)) + 1);
-  for (int y = 0; y < thickness.rows; ++y)
-    for (int x = 0; x < thickness.cols; ++x)
-      if (const float value = thickness.at<float>(y, x); value > 0) buckets[bucket_of(value)].emplace_back(x, y);
-  std::vector<cv::Point> order;
-  order.reserve(thickness.total());
-  for (auto bucket = buckets.rbegin(); bucket != buckets.rend(); ++bucket)
-    order.insert(order.end(), bucket->begin(), bucket->end());
-  return order;
-}
-
-cv::Mat peel(const cv::Mat& thickness, double door_ratio) {
-  const std::vector<cv::Point> order = by_falling_thickness(thickness);
+cv::Mat peel(const cv::Mat& clearance, const cv::Mat& thickness, const SegmentationParams& params) {
+  const std::vector<cv::Point> order = by_falling_value(thickness);
+  const cv::Mat basins = find_basins(clearance, by_falling_value(clearance), params.pinch_ratio);
   cv::Mat labels(thickness.size(), CV_32SC1, cv::Scalar(0));
   std::vector<cv::Point> stack;
   int next = 0;
   for (const cv::Point& seed : order)
     if (labels.at<int>(seed) == 0) {
-      const auto least = std::max(static_cast<float>(door_ratio) * thickness.at<float>(seed), 1e-6f);
-      flood(thickness, seed, least, ++next, labels, stack);
+      const auto least = std::max(static_cast<float>(params.step_ratio) * thickness.at<float>(seed), 1e-6f);
+      flood(thickness, basins, seed, least, ++next, labels, stack);
     }
   return labels;
 }
@@ -73,22 +115,30 @@ struct Absorption {
 };
 
 /// How shallow a zone is, and the neighbour it hangs on to.
-Absorption shallowness(int id, const Zone& zone, double typical, const SegmentationParams& params) {
+Absorption shallowness(int id, const ZoneGraph& graph, double typical, const SegmentationParams& params) {
+  const Zone& zone = graph.zones().at(id);
   Absorption found{id, 0, std::numeric_limits<double>::infinity()};
-  double widest = 0, sum = 0;
+  double widest = 0, highest = 0, second = 0;
   for (const auto& [other, contact] : zone.contacts) {
-    const double chord = contact.chord();
-    sum += contact.length;
-    if (contact.length > widest) {
-      widest = contact.length;
-      found.into = other;
-      found.depth = zone.area / (chord * chord) / params.niche_depth;
-    }
+    const double peak = graph.zones().at(other).peak;
+    second = std::max(second, std::min(highest, peak));
+    highest = std::max(highest, peak);
+    if (contact.length <= widest) continue;
+    widest = contact.length;
+    found.into = other;
   }
   if (zone.contacts.empty()) return found;
-  if (zone.contacts.size() >= 2) {
-    const double share = sum / (sum + zone.wall_sides);
-    found.depth = std::min(found.depth, params.door_contact / std::max(share, 1e-9));
+  const double chord = zone.contacts.at(found.into).chord();
+  const double depth = zone.area / (chord * chord);
+  const bool is_between_wider = zone.peak < params.pinch_ratio * second;
+  found.depth = depth / (is_between_wider ? params.door_depth : params.niche_depth);
+  // Wide open towards a neighbour of its own width: one corridor or room, parted by a wiggle of its walls.
+  for (const auto& [other, contact] : zone.contacts) {
+    const double peak = graph.zones().at(other).peak;
+    const double narrower = std::min(zone.peak, peak), wider = std::max(zone.peak, peak);
+    if (narrower < params.step_ratio * wider || contact.chord() < 2 * params.open_ratio * narrower) continue;
+    const double closeness = 1 - 0.1 * narrower / wider;  // after the shallow ones, most alike first
+    if (closeness < found.depth) found.depth = closeness, found.into = other;
   }
   const double least_area = params.min_room_ratio * typical * typical;
   if (zone.area < least_area || zone.peak < params.min_clearance_px)
@@ -104,14 +154,14 @@ void absorb_shallow(ZoneGraph& graph, double typical, const SegmentationParams& 
   const auto refresh = [&](int id) {
     if (const auto old = keys.find(id); old != keys.end()) queue.erase(old->second);
     const Zone& zone = graph.zones().at(id);
-    const Key key{shallowness(id, zone, typical, params).depth, zone.area, id};
+    const Key key{shallowness(id, graph, typical, params).depth, zone.area, id};
     keys[id] = key;
     queue.insert(key);
   };
   for (const auto& [id, zone] : graph.zones()) refresh(id);
   while (!queue.empty() && std::get<0>(*queue.begin()) < 1) {
     const int id = std::get<2>(*queue.begin());
-    const int into = shallowness(id, graph.zones().at(id), typical, params).into;
+    const int into = shallowness(id, graph, typical, params).into;
     queue.erase(queue.begin());
     keys.erase(id);
     graph.merge(id, into);
@@ -123,10 +173,11 @@ void absorb_shallow(ZoneGraph& graph, double typical, const SegmentationParams& 
 }  // namespace
 
 cv::Mat constriction_labels(const cv::Mat& structure, const SegmentationParams& params) {
-  const cv::Mat thickness = local_thickness(clearance_image(structure));
-  cv::Mat labels = peel(thickness, params.door_ratio);
-  ZoneGraph graph(labels, thickness);
-  absorb_shallow(graph, median_thickness(thickness), params);
+  const cv::Mat clearance = clearance_image(structure);
+  const cv::Mat thickness = local_thickness(clearance);
+  cv::Mat labels = peel(clearance, thickness, params);
+  ZoneGraph graph(labels, clearance);
+  absorb_shallow(graph, typical_thickness(thickness), params);
   graph.relabel(labels);
   return labels;
 }

@@ -23,7 +23,7 @@ constexpr size_t kMaxRegions = 65535;
 cv::Mat structure_of(const cv::Mat& free_space, double clutter_ratio) {
   cv::Mat structure = without_islands(free_space, 0);
   for (int round = 0; round < 3; ++round) {
-    const double typical = median_thickness(local_thickness(clearance_image(structure)));
+    const double typical = typical_thickness(local_thickness(clearance_image(structure)));
     cv::Mat cleared = without_islands(free_space, clutter_ratio * typical);
     const bool is_stable = cv::countNonZero(cleared != structure) == 0;
     structure = cleared;
@@ -97,7 +97,7 @@ cv::Mat constriction_method(const cv::Mat& free_space, const SegmentationParams&
   cv::Mat labels = straighten_borders(constriction_labels(structure, params), structure);
   labels.setTo(0, free_space != 255);
   labels = connected_regions(labels);
-  const double typical = median_thickness(local_thickness(clearance_image(structure)));
+  const double typical = typical_thickness(local_thickness(clearance_image(structure)));
   sweep_crumbs(labels, params.min_room_ratio * typical * typical);
   return labels;
 }
@@ -106,23 +106,24 @@ cv::Mat constriction_method(const cv::Mat& free_space, const SegmentationParams&
 
 Result<Ok> SegmentationParams::validate() const {
   return ParamCheck("SegmentationParams")
-      .in_range("door_ratio", door_ratio, 0.1, 0.99)
+      .in_range("pinch_ratio", pinch_ratio, 0.1, 0.99)
+      .in_range("step_ratio", step_ratio, 0.1, 0.99)
       .in_range("niche_depth", niche_depth, 0, 10)
-      .in_range("door_contact", door_contact, 0, 1)
+      .in_range("door_depth", door_depth, 0, 100)
+      .in_range("open_ratio", open_ratio, 0.1, 10)
       .in_range("min_room_ratio", min_room_ratio, 0, 100)
       .in_range("min_clearance_px", min_clearance_px, 0, 1000)
       .in_range("clutter_ratio", clutter_ratio, 0, 10)
-      .in_range("maoris_door_drop", maoris_door_drop, 0, 1)
-      .in_range("maoris_margin", maoris_margin, 0, 1)
-      .in_range("maoris_ripple_percent", maoris_ripple_percent, 0, 100)
-      .in_range("maoris_door_percent", maoris_door_percent, 0, 100)
       .result();
 }
 
-SegmentationParams segmentation_params(MapKind kind, SegmentationMethod method) {
+SegmentationParams segmentation_params(MapKind kind) {
   SegmentationParams params;
-  params.method = method;
-  if (kind == MapKind::kSketch) params.maoris_door_percent = 60;
+  if (kind == MapKind::kSketch) {
+    params.step_ratio = 0.75;
+    params.door_depth = 0.3;
+    params.min_room_ratio = 0.05;
+  }
   return params;
 }
 
@@ -133,8 +134,6 @@ Result<Segmentation> segment(const cv::Mat& free_space, const SegmentationParams
   if (free_space.total() > kMaxPixels)
     return fail(Errc::kTooLarge, "the map has more than 64 megapixels: reduce it first");
   if (cv::countNonZero(free_space == 255) == 0) return fail(Errc::kDegenerate, "the map has no free space to split");
-  if (params.method == SegmentationMethod::kMaoris)
-    return fail(Errc::kUnsupported, "segmentation by MAORIS is not built in");
   const cv::Mat labels = constriction_method(free_space, params);
   Segmentation result = describe_regions(labels);
   if (result.regions.size() > kMaxRegions)

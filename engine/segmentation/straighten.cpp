@@ -107,7 +107,7 @@ bool apply_cut(const Contact& contact, const Cut& cut, const std::vector<int>& a
   std::vector<cv::Point> corners = contact.pixels;
   corners.insert(corners.end(), {cut.a, cut.b});
   cv::Rect window = cv::boundingRect(corners);
-  const int margin = std::max(window.width, window.height) / 4 + 2;
+  const int margin = std::max(window.width, window.height) + 2;
   window = cv::Rect(window.x - margin, window.y - margin, window.width + 2 * margin, window.height + 2 * margin) &
            cv::Rect(0, 0, labels.cols, labels.rows);
   cv::Mat local = labels(window);

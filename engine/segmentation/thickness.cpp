@@ -97,16 +97,16 @@ cv::Mat without_islands(const cv::Mat& free_space, double max_side_px) {
   return result;
 }
 
-double median_thickness(const cv::Mat& thickness) {
+double typical_thickness(const cv::Mat& thickness) {
   std::vector<float> values;
   values.reserve(thickness.total());
   for (int y = 0; y < thickness.rows; ++y)
     for (int x = 0; x < thickness.cols; ++x)
       if (thickness.at<float>(y, x) > 0) values.push_back(thickness.at<float>(y, x));
   if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 5);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
 }
 
 }  // namespace smokemap

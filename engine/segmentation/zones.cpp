@@ -22,7 +22,7 @@ void ZoneContact::add(const ZoneContact& other) {
   length += other.length;
 }
 
-ZoneGraph::ZoneGraph(const cv::Mat& labels, const cv::Mat& thickness) {
+ZoneGraph::ZoneGraph(const cv::Mat& labels, const cv::Mat& clearance) {
   int last = 0;
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x) {
@@ -31,7 +31,7 @@ ZoneGraph::ZoneGraph(const cv::Mat& labels, const cv::Mat& thickness) {
       last = std::max(last, id);
       Zone& zone = zones_[id];
       zone.area += 1;
-      zone.peak = std::max(zone.peak, static_cast<double>(thickness.at<float>(y, x)));
+      zone.peak = std::max(zone.peak, static_cast<double>(clearance.at<float>(y, x)));
       for (const cv::Point step : {cv::Point(1, 0), cv::Point(0, 1), cv::Point(-1, 0), cv::Point(0, -1)}) {
         const cv::Point n(x + step.x, y + step.y);
         const bool inside = n.x >= 0 && n.y >= 0 && n.x < labels.cols && n.y < labels.rows;

@@ -49,17 +49,8 @@ bool on_ridge(const cv::Mat& clearance, int x, int y) {
   return std::hypot(gx, gy) < kRidgeSlope;
 }
 
-}  // namespace
-
-cv::Mat free_clearance(const cv::Mat& free_space) {
-  cv::Mat padded, distance;
-  cv::copyMakeBorder(free_space == 255, padded, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
-  cv::distanceTransform(padded, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE, CV_32F);
-  return distance(cv::Rect(1, 1, free_space.cols, free_space.rows)).clone();
-}
-
-cv::Mat thin_by_clearance(const cv::Mat& clearance, double min_clearance_px) {
-  cv::Mat line = clearance >= std::max(min_clearance_px, 1e-6);
+/// Takes simple pixels away by rising clearance; ridge pixels with at most `end_neighbours` neighbours are ends and stay.
+void thin(const cv::Mat& clearance, int end_neighbours, cv::Mat& line) {
   using Entry = std::tuple<float, int, int>;  // clearance, row, column: smallest first
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   const auto consider = [&](int x, int y) {
@@ -74,10 +65,27 @@ cv::Mat thin_by_clearance(const cv::Mat& clearance, double min_clearance_px) {
     queue.pop();
     if (line.at<unsigned char>(y, x) == 0) continue;
     const Ring ring = ring_around(line, x, y);
-    if (!is_simple(ring) || (ring.count <= 1 && on_ridge(clearance, x, y))) continue;
+    if (!is_simple(ring) || (ring.count <= end_neighbours && on_ridge(clearance, x, y))) continue;
     line.at<unsigned char>(y, x) = 0;
     for (const auto& step : kAround) consider(x + step[0], y + step[1]);
   }
+}
+
+}  // namespace
+
+cv::Mat free_clearance(const cv::Mat& free_space) {
+  cv::Mat padded, distance;
+  cv::copyMakeBorder(free_space == 255, padded, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+  cv::distanceTransform(padded, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE, CV_32F);
+  return distance(cv::Rect(1, 1, free_space.cols, free_space.rows)).clone();
+}
+
+cv::Mat thin_by_clearance(const cv::Mat& clearance, double min_clearance_px) {
+  cv::Mat line = clearance >= std::max(min_clearance_px, 1e-6);
+  // The end of a line two pixels wide, as in an even corridor, has two neighbours once its twin is gone: such ends stay until
+  // all lines are one pixel wide.
+  thin(clearance, 2, line);
+  thin(clearance, 1, line);
   return line;
 }
 

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "core/random.hpp"
+#include "geometry/pose2.hpp"
+
+namespace smokemap::test {
+
+/// A drawn floor plan and, for every free pixel, which room it belongs to.
+struct PlanPicture {
+  cv::Mat free_space;  ///< CV_8UC1, 255 = free
+  cv::Mat rooms;       ///< CV_16UC1, 0 = wall, 1 = corridor, then rooms
+  std::vector<cv::Rect> boxes;  ///< of room 1, 2, ...
+};
+
+/// A corridor with rooms of different widths and depths on both sides, each behind a door.
+inline PlanPicture office_plan(std::mt19937_64& random, int rooms_a_side = 4) {
+  const int wall = 4, corridor = 30, door = 12, margin = 20;
+  std::vector<cv::Rect> boxes(1);
+  std::vector<cv::Rect> doors;
+  int right = margin;
+  const int top = 150;
+  for (const bool is_above : {true, false}) {
+    int x = margin;
+    for (int room = 0; room < rooms_a_side; ++room) {
+      const int width = static_cast<int>(uniform(random, 45, 95)), depth = static_cast<int>(uniform(random, 55, 110));
+      const int y = is_above ? top - wall - depth : top + corridor + wall;
+      boxes.emplace_back(x, y, width, depth);
+      const int door_x = x + static_cast<int>(uniform(random, 4, width - door - 4));
+      doors.emplace_back(door_x, is_above ? top - wall : top + corridor, door, wall);
+      x += width + wall;
+    }
+    right = std::max(right, x - wall);
+  }
+  boxes[0] = cv::Rect(margin, top, right - margin, corridor);
+  PlanPicture plan{cv::Mat(330, right + margin, CV_8UC1, cv::Scalar(0)), {}, boxes};
+  plan.rooms = cv::Mat(plan.free_space.size(), CV_16UC1, cv::Scalar(0));
+  for (const cv::Rect& opening : doors) plan.rooms(opening).setTo(1);
+  for (size_t i = 0; i < boxes.size(); ++i) plan.rooms(boxes[i]).setTo(static_cast<int>(i) + 1);
+  plan.free_space.setTo(255, plan.rooms != 0);
+  return plan;
+}
+
+/// What people do to a plan when they draw it from memory.
+struct SketchHabits {
+  int quarter_turns = 0;
+  double scale = 1.2;
+  double stretch = 1.0;      ///< along the corridor over across it
+  double bend_px = 6;        ///< how far walls wander
+  double tilt_rad = 0.03;
+  int rooms_left_out = 0;
+};
+
+/// The drawing, the true rooms in it, and where every point of it lies on the plan.
+struct PlanSketch {
+  PlanPicture picture;
+  cv::Mat to_plan;  ///< CV_32FC2, plan pixel of every sketch pixel
+  std::set<int> left_out;
+
+  Point2 on_plan(const Point2& p_sketch) const {
+    const cv::Vec2f p = to_plan.at<cv::Vec2f>(static_cast<int>(std::lround(p_sketch.y())), static_cast<int>(std::lround(p_sketch.x())));
+    return {p[0], p[1]};
+  }
+};
+
+inline PlanSketch sketch_of(const PlanPicture& plan, const SketchHabits& habits, std::mt19937_64& random) {
+  PlanSketch sketch;
+  cv::Mat rooms = plan.rooms.clone();
+  const auto count = static_cast<std::uint64_t>(plan.boxes.size());
+  while (static_cast<int>(sketch.left_out.size()) < habits.rooms_left_out)
+    sketch.left_out.insert(2 + static_cast<int>(uniform_index(random, count - 1)));
+  for (const int room : sketch.left_out) rooms.setTo(0, plan.rooms == room);
+  const double side = 1.25 * habits.scale * std::max(rooms.cols, rooms.rows) * std::max(1.0, habits.stretch);
+  const cv::Size size(static_cast<int>(side), static_cast<int>(side));
+  const double angle = habits.tilt_rad + habits.quarter_turns * std::numbers::pi / 2;
+  const double phase_x = uniform(random, 0, 6), phase_y = uniform(random, 0, 6);
+  sketch.to_plan = cv::Mat(size, CV_32FC2);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const double dx = x - 0.5 * size.width, dy = y - 0.5 * size.height;
+      const double u = (std::cos(angle) * dx - std::sin(angle) * dy) / (habits.scale * habits.stretch);
+      const double v = (std::sin(angle) * dx + std::cos(angle) * dy) / habits.scale;
+      const double px = 0.5 * rooms.cols + u + habits.bend_px * std::sin(v / 55 + phase_x);
+      const double py = 0.5 * rooms.rows + v + habits.bend_px * std::sin(u / 70 + phase_y);
+      sketch.to_plan.at<cv::Vec2f>(y, x) = {static_cast<float>(px), static_cast<float>(py)};
+    }
+  cv::remap(rooms, sketch.picture.rooms, sketch.to_plan, cv::noArray(), cv::INTER_NEAREST, cv::BORDER_CONSTANT, 0);
+  sketch.picture.free_space = sketch.picture.rooms != 0;
+  return sketch;
+}
+
+/// The true room that most pixels with a label have, and how much the two cover each other (intersection over union).
+struct TrueRoom {
+  int room = 0;
+  double overlap = 0;
+};
+inline TrueRoom true_room(const cv::Mat& labels, int label, const cv::Mat& rooms) {
+  TrueRoom best;
+  double largest = 0;
+  cv::minMaxLoc(rooms, nullptr, &largest);
+  const cv::Mat mine = labels == label;
+  int most = 0;
+  for (int room = 1; room <= static_cast<int>(largest); ++room) {
+    const cv::Mat theirs = rooms == room;
+    const int common = cv::countNonZero(mine & theirs);
+    if (common <= most) continue;
+    most = common;
+    best = {room, static_cast<double>(common) / cv::countNonZero(mine | theirs)};
+  }
+  return best;
+}
+
+}  // namespace smokemap::test
