@@ -10,7 +10,7 @@
 namespace smokemap {
 namespace {
 
-enum Stream : std::uint64_t { kBuildingStream = 11, kPlanStream = 12, kPictureStream = 13, kStartStream = 14 };
+enum DemoStream : std::uint64_t { kBuildingStream = 11, kPlanStream = 12, kPictureStream = 13, kStartStream = 14 };
 
 /// Just inside the exit of corridor A, looking along the corridor.
 Pose2 place_robot(const FloorPlan& building) {

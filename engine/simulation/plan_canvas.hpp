@@ -9,7 +9,7 @@
 namespace smokemap {
 
 /// A drawing board in pixels of the final picture (integers at pixel centres); drawn twice as large and averaged down,
-/// so that edges are smooth and positions exact to a fraction of a pixel.
+/// so that edges are smooth and positions right to about a quarter of a pixel.
 class PlanCanvas {
  public:
   PlanCanvas(int width_px, int height_px);

@@ -7,7 +7,7 @@
 namespace smokemap {
 namespace {
 
-enum Stream : std::uint64_t { kDriveStream = 1, kLidarStream = 2, kRadarStream = 3 };
+enum RobotStream : std::uint64_t { kDriveStream = 1, kLidarStream = 2, kRadarStream = 3 };
 
 }  // namespace
 

@@ -51,7 +51,7 @@ TEST(PlanPicture, IsDarkOnWallsAndLightInRoomsAndDoors) {
   for (const Polygon& room : truth.layout.rooms_px) EXPECT_LT(darkness_at(gray, centroid(room)), 30);
 }
 
-TEST(PlanPicture, DrawsWallsWhereTruthSaysToATenthOfAPixel) {
+TEST(PlanPicture, DrawsWallsWhereTruthSays) {
   FloorPlan square = one_room_building();
   std::mt19937_64 random(3);
   PlanPictureParams params;
