@@ -38,21 +38,29 @@ class Canvas {
 
 constexpr double kFarthest_m = 20'000;  // keeps tile numbers within 16 bits at 0.05 m
 
+/// For every cell along one side of the sensed grid, which of ours it covers; a coarse one covers several.
+std::vector<std::vector<int>> covered_cells(int count, double first, double to_cells) {
+  const int repeat = std::max(1, static_cast<int>(std::ceil(to_cells - 1e-6)));
+  std::vector<std::vector<int>> covered(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i)
+    for (int part = 0; part < repeat; ++part)
+      covered[static_cast<std::size_t>(i)].push_back(
+          static_cast<int>(std::floor(first + (i + (part + 0.5) / repeat) * to_cells)));
+  return covered;
+}
+
 void paint_sensed(const OccupancyGrid& sensed, double resolution_m, Canvas& canvas) {
   const GridFrame& frame = sensed.frame();
   const double to_cells = frame.resolution_m / resolution_m;
-  const int repeat = std::max(1, static_cast<int>(std::ceil(to_cells - 1e-6)));  // a coarse cell fills several of ours
-  const double x0 = frame.origin.x() / resolution_m, y0 = frame.origin.y() / resolution_m;
-  for (int y = 0; y < frame.height_cells; ++y)
-    for (int x = 0; x < frame.width_cells; ++x) {
-      const std::uint8_t code = occupancy_code(sensed.at({x, y}));
+  const auto columns = covered_cells(frame.width_cells, frame.origin.x() / resolution_m, to_cells);
+  const auto rows = covered_cells(frame.height_cells, frame.origin.y() / resolution_m, to_cells);
+  for (std::size_t y = 0; y < rows.size(); ++y)
+    for (std::size_t x = 0; x < columns.size(); ++x) {
+      const std::uint8_t code = occupancy_code(sensed.cells()[y * columns.size() + x]);
       if (code == kCodeUnknown) continue;
-      for (int dy = 0; dy < repeat; ++dy)
-        for (int dx = 0; dx < repeat; ++dx) {
-          const Cell cell{static_cast<int>(std::floor(x0 + (x + (dx + 0.5) / repeat) * to_cells)),
-                          static_cast<int>(std::floor(y0 + (y + (dy + 0.5) / repeat) * to_cells))};
-          canvas.paint(cell, [code](std::uint8_t there) { return std::max(there, code); });
-        }
+      for (const int row : rows[y])
+        for (const int column : columns[x])
+          canvas.paint({column, row}, [code](std::uint8_t there) { return std::max(there, code); });
     }
 }
 
