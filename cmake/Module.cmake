@@ -3,6 +3,9 @@
 add_library(project_warnings INTERFACE)
 target_compile_options(project_warnings INTERFACE -Wall -Wextra -Wconversion -Wshadow -Wpedantic
                        -Wnon-virtual-dtor -Woverloaded-virtual -Werror)
+if(CMAKE_UNITY_BUILD)  # sources become included files there, and types of their anonymous namespaces look like a header's
+  target_compile_options(project_warnings INTERFACE -Wno-subobject-linkage)
+endif()
 
 add_library(project_sanitizers INTERFACE)
 if(SMOKEMAP_SANITIZE STREQUAL "address")

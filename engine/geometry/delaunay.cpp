@@ -11,8 +11,6 @@
 namespace smokemap {
 namespace {
 
-double cross(const Point2& a, const Point2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// Positive if p lies inside the circle through a, b, c (counter-clockwise).
 bool in_circle(const Point2& a, const Point2& b, const Point2& c, const Point2& p) {
   const Point2 u = a - p, v = b - p, w = c - p;

@@ -43,6 +43,9 @@ class Pose2 {
   double heading_ = 0;
 };
 
+/// z of the cross product: twice the signed area of the triangle (0, a, b).
+inline double cross(const Point2& a, const Point2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
 /// From a to b at share t in [0, 1]: straight line, shortest turn.
 inline Pose2 interpolate(const Pose2& a, const Pose2& b, double t) {
   return {a.translation() + t * (b.translation() - a.translation()),

@@ -5,8 +5,6 @@
 namespace smokemap {
 namespace {
 
-double cross(const Point2& a, const Point2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// Parameters (t on one, u on two) of the crossing of the infinite lines.
 std::optional<std::pair<double, double>> crossing(const Segment2& one, const Segment2& two) {
   const Point2 d = one.b - one.a, e = two.b - two.a, between = two.a - one.a;
