@@ -27,5 +27,7 @@ void add_layout(CLI::App& app, Outcome& outcome);
 void add_sketch(CLI::App& app, Outcome& outcome);
 void add_merge(CLI::App& app, Outcome& outcome);
 void add_serve(CLI::App& app, Outcome& outcome);
+void add_slam(CLI::App& app, Outcome& outcome);
+void add_evaluate(CLI::App& app, Outcome& outcome);
 
 }  // namespace smokemap::app

@@ -33,6 +33,8 @@ int run(int argc, char** argv) {
   add_simulate(app, outcome);
   add_sketch(app, outcome);
   add_merge(app, outcome);
+  add_slam(app, outcome);
+  add_evaluate(app, outcome);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
