@@ -7,7 +7,7 @@ import { distance, layoutPx, mapPoint, pixelToView, screenPoint, viewPoint, view
 import { centroid, contains, interiorPoint, signedArea } from '../src/geometry/polygon';
 import { distanceToPolyline, distanceToSegment, nearestOnSegment } from '../src/geometry/segment';
 import { applyAffine, fitSimilarity, invertAffine, toScreen, toView, viewToScreenAffine, type ViewState } from '../src/geometry/similarity';
-import { simplify } from '../src/geometry/simplify';
+import { densify, simplify } from '../src/geometry/simplify';
 import { snapToWalls } from '../src/geometry/snap';
 import { between, randomSource } from './random';
 
@@ -182,6 +182,14 @@ describe('drawing help', () => {
   test('a wall that is nearly upright becomes upright', () => {
     expect(snapToWalls([53, 60] as Xy, [], 8, [50, 20])).toEqual({ p: [50, 60], to: 'axis' });
     expect(snapToWalls([90, 22] as Xy, [], 8, [50, 20])).toEqual({ p: [90, 20], to: 'axis' });
+  });
+  test('a denser chain has the same shape and keeps every point', () => {
+    const chain: Xy[] = [[0, 0], [10, 0], [10, 7]];
+    const dense = densify(chain, 3);
+    for (const p of chain) expect(dense).toContainEqual(p);
+    for (const p of dense) expect(distanceToPolyline(p, chain)).toBeLessThan(1e-9);
+    dense.slice(1).forEach((p, i) => expect(distance(p, dense[i]!)).toBeLessThanOrEqual(3 + 1e-9));
+    expect(densify([], 3)).toEqual([]);
   });
   test('simplifying stays within its tolerance and keeps both ends', () => {
     const random = randomSource(9);

@@ -20,3 +20,17 @@ export function simplify<P extends Xy>(points: readonly P[], tolerance: number):
   }
   return points.filter((_, i) => keep.has(i));
 }
+
+/** The same chain with points at most `spacing` apart: every given point stays. */
+export function densify(points: readonly Xy[], spacing: number): [number, number][] {
+  const dense: [number, number][] = [];
+  points.forEach((p, i) => {
+    const from = points[i - 1];
+    const steps = from ? Math.max(1, Math.ceil(Math.hypot(p[0] - from[0], p[1] - from[1]) / spacing)) : 1;
+    for (let k = 1; from && k < steps; k++) {
+      dense.push([from[0] + ((p[0] - from[0]) * k) / steps, from[1] + ((p[1] - from[1]) * k) / steps]);
+    }
+    dense.push([p[0], p[1]]);
+  });
+  return dense;
+}

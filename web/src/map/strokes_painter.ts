@@ -1,9 +1,12 @@
 /** Pen strokes. perfect-freehand shapes them for the eye only; what is stored and sent are the points of the pen. */
 import { getStroke } from 'perfect-freehand';
 import type { Xy } from '../geometry/points';
+import { densify } from '../geometry/simplify';
 import type { Stroke, StrokeKind } from '../wire/parts';
 import type { Palette } from './palette';
 import { enterWorld, type Frame, type Painter } from './painter';
+
+const kSpacingPx = 3;
 
 export type ShownStroke = Pick<Stroke, 'kind' | 'width' | 'points'>;
 
@@ -14,7 +17,8 @@ export function strokePath({ points, width }: Pick<Stroke, 'points' | 'width'>):
     path.arc(only[0], -only[1], width / 2, 0, 2 * Math.PI);
     return path;
   }
-  const outline = getStroke(points as unknown as number[][], { size: width, thinning: 0, smoothing: 0.5, streamline: 0.35, last: true });
+  // Few points far apart would be rounded off into another shape than the one that is read: no streamlining, and enough points.
+  const outline = getStroke(densify(points, kSpacingPx), { size: width, thinning: 0, smoothing: 0.3, streamline: 0, last: true });
   for (const [x, y] of outline) path.lineTo(x!, -y!);
   path.closePath();
   return path;

@@ -92,7 +92,7 @@ export async function decodeTile(tile: TileHeader): Promise<Uint8Array> {
   return cells;
 }
 
-/** Stops reading beyond `limit` bytes: a few bytes can claim to hold gigabytes. */
+/** Stops reading beyond `limit` bytes: a few bytes can claim to hold very many. */
 async function inflate(bytes: Uint8Array, limit: number): Promise<Uint8Array> {
   const stream = new DecompressionStream('deflate-raw');
   const writer = stream.writable.getWriter();
