@@ -57,7 +57,9 @@ void run_layout(const LayoutArguments& arguments, Outcome& outcome) {
   if (arguments.metres_per_pixel != 0) options.metres_per_pixel = arguments.metres_per_pixel;
   const auto bytes = read_file(arguments.picture, PictureLimits{}.max_bytes);
   if (!bytes) return outcome.no_answer(bytes.error());
-  const auto picture = decode_picture(*bytes, {}, arguments.page - 1);
+  PictureLimits limits;
+  limits.decode_seconds = 30;  // a busy machine is no reason to refuse a file that somebody named on the command line
+  const auto picture = decode_picture(*bytes, limits, arguments.page - 1);
   if (!picture) return outcome.no_answer(picture.error());
   const auto reading = read_layout(*picture, options);
   if (!reading) return outcome.no_answer(reading.error());

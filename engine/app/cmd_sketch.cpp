@@ -45,7 +45,9 @@ Result<SketchMap> sketch_from_json(const std::string& text) {
 }
 
 Result<SketchMap> sketch_from_photo(const std::vector<std::uint8_t>& bytes, std::vector<std::string>& warnings) {
-  const auto picture = decode_picture(bytes);
+  PictureLimits limits;
+  limits.decode_seconds = 30;  // a busy machine is no reason to refuse a file that somebody named on the command line
+  const auto picture = decode_picture(bytes, limits);
   if (!picture) return picture.error();
   const auto photo = read_sketch_photo(*picture);
   if (!photo) return photo.error();
