@@ -49,9 +49,9 @@ PointToLine point_to_line(const Point2& p_robot, const Point2& q, const Point2& 
           {normal.x(), normal.y(), normal.dot(Point2(-arm.y(), arm.x()))}};
 }
 
-Alignment align(const std::vector<SurfacePoint>& points_robot, const SurfaceMap& map, const Pose2& T_map_robot,
+ScanAlignment align(const std::vector<SurfacePoint>& points_robot, const SurfaceMap& map, const Pose2& T_map_robot,
                 const AlignParams& params, const std::optional<PosePrior>& prior) {
-  Alignment found;
+  ScanAlignment found;
   found.T_map_robot = T_map_robot;
   NormalEquations sum;
   double gate_m = params.gate_m;

@@ -13,7 +13,7 @@ struct PosePrior {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of x, y (map frame) and heading
 };
 
-struct Alignment {
+struct ScanAlignment {
   Pose2 T_map_robot;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the points alone: x, y (map frame), heading
   double score = 0;     ///< share of the points that lie on a surface of the map, weighted 0 .. 1 by their distance
@@ -25,7 +25,7 @@ struct Alignment {
 /// Moves the points onto the map: Gauss-Newton on robust point-to-line distances, surfaces looked up again in every
 /// iteration, within a gate that closes. r_i = n_i . (R p_i + t - q_i), Geman-McClure kernel.
 /// Never fails: no surface found gives a score of 0.
-Alignment align(const std::vector<SurfacePoint>& points_robot, const SurfaceMap& map, const Pose2& T_map_robot,
+ScanAlignment align(const std::vector<SurfacePoint>& points_robot, const SurfaceMap& map, const Pose2& T_map_robot,
                 const AlignParams& params, const std::optional<PosePrior>& prior = {});
 
 /// One row of the problem, for the solver and for the test of its derivative.

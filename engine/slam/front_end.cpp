@@ -33,7 +33,7 @@ FrontEnd::Tracked FrontEnd::track(const ScanPoints& points, const PredictedStep&
     T_track_robot_ = predicted;
     return answer(ScanFate::kTooFewPoints, 0);
   }
-  const Alignment found = match(points.surface, predicted, step);
+  const ScanAlignment found = match(points.surface, predicted, step);
   if (!believable(found, predicted, step)) return go_on_blindly(points, predicted, step, found.score);
   poor_in_a_row_ = 0;
   usual_score_ += kScoreMemory * (found.score - usual_score_);
@@ -49,7 +49,7 @@ FrontEnd::Tracked FrontEnd::track(const ScanPoints& points, const PredictedStep&
 
 /// A score as good as usual is proof; a fair one, as when most of the scan looks into a new room, is believed where the
 /// prediction agrees.
-bool FrontEnd::believable(const Alignment& found, const Pose2& predicted, const PredictedStep& step) const {
+bool FrontEnd::believable(const ScanAlignment& found, const Pose2& predicted, const PredictedStep& step) const {
   if (found.score >= std::max(params_.front_end.least_score, kUsualShare * usual_score_)) return true;
   if (!step.by_odometry) return false;  // agreeing with a guess would mean nothing
   const Pose2 moved = predicted.inverse() * found.T_map_robot;
@@ -70,11 +70,11 @@ FrontEnd::Tracked FrontEnd::go_on_blindly(const ScanPoints& points, const Pose2&
   return tracked;
 }
 
-Alignment FrontEnd::match(const std::vector<SurfacePoint>& surface, const Pose2& predicted, const PredictedStep& step) {
+ScanAlignment FrontEnd::match(const std::vector<SurfacePoint>& surface, const Pose2& predicted, const PredictedStep& step) {
   PosePrior prior{predicted, Eigen::Matrix3d::Zero()};
   prior.information.diagonal() << 1 / (step.sigma_m * step.sigma_m), 1 / (step.sigma_m * step.sigma_m),
       1 / (step.sigma_rad * step.sigma_rad);
-  const Alignment refined = align(surface, map_, predicted, params_.align, prior);
+  const ScanAlignment refined = align(surface, map_, predicted, params_.align, prior);
   return search_needed(step, refined.score) ? search(surface, prior, step, refined) : refined;
 }
 
@@ -85,8 +85,8 @@ bool FrontEnd::search_needed(const PredictedStep& step, double score) const {
 }
 
 /// Looks for a better start than the prediction, refines from there, and keeps the better of both.
-Alignment FrontEnd::search(const std::vector<SurfacePoint>& surface, const PosePrior& prior, const PredictedStep& step,
-                           const Alignment& so_far) {
+ScanAlignment FrontEnd::search(const std::vector<SurfacePoint>& surface, const PosePrior& prior, const PredictedStep& step,
+                           const ScanAlignment& so_far) {
   std::vector<Point2> known, points;
   map_.for_each([&](const SurfaceMap::Surface& s) {
     if ((s.p - prior.T_map_robot.translation()).norm() < params_.points.farthest_m) known.push_back(s.p);
@@ -100,7 +100,7 @@ Alignment FrontEnd::search(const std::vector<SurfacePoint>& surface, const PoseP
   if (!found) return so_far;
   PosePrior loose = prior;
   loose.information *= 0.25;
-  const Alignment refined = align(surface, map_, found->T_map_robot, params_.align, loose);
+  const ScanAlignment refined = align(surface, map_, found->T_map_robot, params_.align, loose);
   return refined.score > so_far.score + 0.02 ? refined : so_far;
 }
 
@@ -140,7 +140,7 @@ FrontEnd::Tracked FrontEnd::begin_piece(const ScanPoints& points, ScanFate fate)
   return tracked;
 }
 
-Eigen::Matrix3d FrontEnd::match_covariance(const Alignment& alignment) const {
+Eigen::Matrix3d FrontEnd::match_covariance(const ScanAlignment& alignment) const {
   Eigen::Matrix3d information = params_.graph.pair_information * alignment.information;
   information.diagonal() += Eigen::Vector3d(4.0, 4.0, 4.0);  // nothing is less certain than half a metre after a match
   return information.inverse();

@@ -43,16 +43,16 @@ class FrontEnd {
     Pose2 T_track_node;
     std::vector<SurfacePoint> surface;
   };
-  Alignment match(const std::vector<SurfacePoint>& surface, const Pose2& predicted, const PredictedStep& step);
-  bool believable(const Alignment& found, const Pose2& predicted, const PredictedStep& step) const;
+  ScanAlignment match(const std::vector<SurfacePoint>& surface, const Pose2& predicted, const PredictedStep& step);
+  bool believable(const ScanAlignment& found, const Pose2& predicted, const PredictedStep& step) const;
   Tracked go_on_blindly(const ScanPoints& points, const Pose2& predicted, const PredictedStep& step, double score);
   bool search_needed(const PredictedStep& step, double score) const;
-  Alignment search(const std::vector<SurfacePoint>& surface, const PosePrior& prior, const PredictedStep& step, const Alignment& so_far);
+  ScanAlignment search(const std::vector<SurfacePoint>& surface, const PosePrior& prior, const PredictedStep& step, const ScanAlignment& so_far);
   bool far_from_last_node() const;
   void keep(const ScanPoints& points);
   void rebuild_map();
   Tracked begin_piece(const ScanPoints& points, ScanFate fate);
-  Eigen::Matrix3d match_covariance(const Alignment& alignment) const;
+  Eigen::Matrix3d match_covariance(const ScanAlignment& alignment) const;
   Tracked answer(ScanFate fate, double score) const;
 
   SlamParams params_;

@@ -76,7 +76,7 @@ bool LoopCloser::try_candidate(const PoseGraph& graph, const NodeScans& scans, i
 
   ++found.rejected;  // until it has passed everything
   if (coarse->runner_up_score > limits.unique_within * coarse->score) return false;
-  const Alignment fine = align(joint, target_, coarse->T_map_robot, params_.align);
+  const ScanAlignment fine = align(joint, target_, coarse->T_map_robot, params_.align);
   if (fine.score < limits.least_align_score || !singles_agree(graph, scans, node, fine.T_map_robot)) return false;
   const Pose2& T_map_old = graph.nodes[index(candidate.node)].T_map_robot;
   const auto sqrt_info = edge_sqrt_information(params_.graph.pair_information * fine.information, T_map_old.heading(),
@@ -114,7 +114,7 @@ bool LoopCloser::singles_agree(const PoseGraph& graph, const NodeScans& scans, i
   int agree = 0, asked = 0;
   for (int i = node; i > std::max(-1, node - params_.loops.joint_nodes); i -= 2) {
     const Pose2 expected = T_map_node * (graph.nodes[index(node)].T_map_robot.inverse() * graph.nodes[index(i)].T_map_robot);
-    const Alignment alone = align(scans.surface[index(i)], target_, expected, params_.align);
+    const ScanAlignment alone = align(scans.surface[index(i)], target_, expected, params_.align);
     const Pose2 off = expected.inverse() * alone.T_map_robot;
     // Along a corridor a single scan may slide: only what its points measure can disagree.
     Eigen::Vector3d error = (alone.T_map_robot.vector() - expected.vector());

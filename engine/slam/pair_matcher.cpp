@@ -64,7 +64,7 @@ std::vector<PoseEdge> PairMatcher::match(const PoseGraph& graph, const NodeScans
     for (const int i : sources[at(j)]) {
       const Pose2& guess = graph.nodes[at(i)].T_map_robot;
       PosePrior prior{guess, Eigen::Vector3d(100, 100, 400).asDiagonal()};
-      const Alignment found = align(scans.surface[at(i)], target_, guess, gentle, prior);
+      const ScanAlignment found = align(scans.surface[at(i)], target_, guess, gentle, prior);
       const Pose2 moved = guess.inverse() * found.T_map_robot;
       if (found.score < params_.graph.least_pair_score || moved.translation().norm() > kLargestCorrection_m ||
           std::abs(moved.heading()) > kLargestCorrection_rad)

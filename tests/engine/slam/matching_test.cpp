@@ -144,14 +144,14 @@ TEST_F(MatchFixture, AlignsToAFewMillimetres) {
   for (int trial = 0; trial < 30; ++trial) {
     const Pose2 truth(13 + uniform(random, -0.3, 0.3), 1 + uniform(random, -0.3, 0.3), uniform(random, -0.5, 1.0));
     const Pose2 guess = truth * random_pose(random, 0.12, 0.06);
-    const Alignment found = align(points(truth), map, guess, params.align);
+    const ScanAlignment found = align(points(truth), map, guess, params.align);
     EXPECT_THAT(found.T_map_robot, IsNear(truth, 0.012, 0.006));
     EXPECT_GT(found.score, 0.6);
   }
 }
 
 TEST_F(MatchFixture, HasNoScoreWhereThereIsNoMap) {
-  const Alignment found = align(points(Pose2(1, 9, 0)), map, Pose2(100, 100, 0), params.align);
+  const ScanAlignment found = align(points(Pose2(1, 9, 0)), map, Pose2(100, 100, 0), params.align);
   EXPECT_EQ(found.matched, 0);
   EXPECT_EQ(found.score, 0);
 }
@@ -161,7 +161,7 @@ TEST_F(MatchFixture, KnowsThatACorridorSaysNothingAlongItself) {
   map.reset({0, 0}, 20);
   const auto scan = surface_points(test::scan_at(corridor, {}, 0, random), params.beams, {}, params.points).surface;
   map.add(scan, {});
-  const Alignment found = align(scan, map, {}, params.align);
+  const ScanAlignment found = align(scan, map, {}, params.align);
   EXPECT_LT(found.information(0, 0), 0.05 * found.information(1, 1));
 }
 
