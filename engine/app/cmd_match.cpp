@@ -69,12 +69,12 @@ Result<std::vector<Point2>> read_points(const std::string& path) {
   return points;
 }
 
-Result<Segmentation> segment_file(const std::string& path, MapKind kind) {
+Result<Segmentation> segment_file(const std::string& path) {
   const Result<cv::Mat> picture = read_map_picture(path);
   if (!picture) return picture.error();
   const Result<cv::Mat> free_space = free_space_of_picture(*picture);
   if (!free_space) return free_space.error();
-  Result<Segmentation> segmentation = segment(*free_space, segmentation_params(kind));
+  Result<Segmentation> segmentation = segment(*free_space, matching_segmentation_params());
   if (!segmentation) return fail(segmentation.error().code, path + ": " + segmentation.error().message);
   return segmentation;
 }
@@ -134,9 +134,9 @@ Result<Ok> match_pictures(const MatchArguments& arguments) {
   if (!pins) return pins.error();
   const Result<std::vector<Point2>> points = read_points(arguments.points);
   if (!points) return points.error();
-  const Result<Segmentation> a = segment_file(arguments.sketch, MapKind::kSketch);
+  const Result<Segmentation> a = segment_file(arguments.sketch);
   if (!a) return a.error();
-  const Result<Segmentation> b = segment_file(arguments.map, MapKind::kRobot);
+  const Result<Segmentation> b = segment_file(arguments.map);
   if (!b) return b.error();
   MatchParams params;
   params.allow_mirror = arguments.mirrored;

@@ -127,6 +127,12 @@ SegmentationParams segmentation_params(MapKind kind) {
   return params;
 }
 
+SegmentationParams matching_segmentation_params() {
+  SegmentationParams params;
+  params.min_room_ratio = 1.5;
+  return params;
+}
+
 Result<Segmentation> segment(const cv::Mat& free_space, const SegmentationParams& params) {
   if (const Result<Ok> valid = params.validate(); !valid) return valid.error();
   if (free_space.empty() || free_space.type() != CV_8UC1)

@@ -24,6 +24,9 @@ struct SegmentationParams {
 /// The parameters for a kind of map. They differ for sketches, which have no furniture and name small niches.
 SegmentationParams segmentation_params(MapKind kind);
 
+/// The parameters for maps that are to be matched, the same for both: only regions large enough to be told apart on a drawing.
+SegmentationParams matching_segmentation_params();
+
 /// Splits free space into regions (rooms, corridors).
 ///
 /// Every free pixel gets exactly one region and isolated rooms stay. A region is connected (4 neighbours), but for crumbs of
