@@ -43,7 +43,7 @@ class ShiftSearch {
   }
 
   /// @param linear  turn and scale of a in cells of b, about a's middle, which it lays on the middle of the window
-  Alignment best_shift(const MapRaster& a, const Eigen::Matrix2d& linear, const std::vector<Pin>& pins) const {
+  MapAlignment best_shift(const MapRaster& a, const Eigen::Matrix2d& linear, const std::vector<Pin>& pins) const {
     Eigen::Affine2d window_a = Eigen::Affine2d::Identity();
     const Point2 middle_a(0.5 * (a.depth.cols - 1), 0.5 * (a.depth.rows - 1));
     window_a.linear() = linear;
@@ -56,7 +56,7 @@ class ShiftSearch {
     cv::dft(spectrum_a, correlation, cv::DFT_INVERSE | cv::DFT_SCALE | cv::DFT_REAL_OUTPUT);
     const std::vector<Point2> shifts = pin_shifts(window_a, a, b_, pins);
     const double norm = std::sqrt(std::max(1e-9, energy_a * energy_b_));
-    Alignment best{window_a, -1e9};
+    MapAlignment best{window_a, -1e9};
     Point2 best_shift = Point2::Zero();
     for (int y = 0; y < size_; ++y)
       for (int x = 0; x < size_; ++x) {
@@ -86,7 +86,7 @@ class ShiftSearch {
 Eigen::Matrix2d rotation(double angle_rad) { return Eigen::Rotation2Dd(angle_rad).toRotationMatrix(); }
 
 /// Mean distance between where two alignments put the corners of a.
-double difference(const Alignment& one, const Alignment& two, const MapRaster& a) {
+double difference(const MapAlignment& one, const MapAlignment& two, const MapRaster& a) {
   double sum = 0;
   for (const Point2& corner : {Point2(0, 0), Point2(a.depth.cols, 0), Point2(0, a.depth.rows), Point2(a.depth.cols, a.depth.rows)})
     sum += (one.cells_b_a * corner - two.cells_b_a * corner).norm();
@@ -95,18 +95,18 @@ double difference(const Alignment& one, const Alignment& two, const MapRaster& a
 
 }  // namespace
 
-std::vector<Alignment> find_alignments(const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins,
+std::vector<MapAlignment> find_alignments(const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins,
                                        bool allow_mirror, int count) {
   const ShiftSearch search(b);
   const double scale = std::sqrt(b.free_cells / std::max(1.0, a.free_cells));
-  std::vector<Alignment> all;
+  std::vector<MapAlignment> all;
   for (int mirror = 0; mirror <= (allow_mirror ? 1 : 0); ++mirror)
     for (int quarter = 0; quarter < 4; ++quarter) {
       // Straighten a's walls, mirror, turn by quarters, then into b's wall direction; stretch along b's walls.
       const Eigen::Matrix2d flip = Eigen::Vector2d(mirror ? -1 : 1, 1).asDiagonal();
       const Eigen::Matrix2d straight =
           rotation(quarter * std::numbers::pi / 2) * flip * rotation(-a.wall_direction_rad);
-      std::vector<Alignment> turned;
+      std::vector<MapAlignment> turned;
       for (const double size : kScales)
         for (const double stretch : kStretches) {
           const Eigen::Matrix2d scaling =
@@ -116,11 +116,11 @@ std::vector<Alignment> find_alignments(const MapRaster& a, const MapRaster& b, c
         }
       all.insert(all.end(), turned.begin(), turned.end());
     }
-  std::stable_sort(all.begin(), all.end(), [](const Alignment& one, const Alignment& two) { return one.score > two.score; });
-  std::vector<Alignment> chosen;
+  std::stable_sort(all.begin(), all.end(), [](const MapAlignment& one, const MapAlignment& two) { return one.score > two.score; });
+  std::vector<MapAlignment> chosen;
   const double apart = 0.08 * std::max(b.depth.cols, b.depth.rows);
-  for (const Alignment& candidate : all) {
-    const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&](const Alignment& other) {
+  for (const MapAlignment& candidate : all) {
+    const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&](const MapAlignment& other) {
       return difference(candidate, other, a) < apart;
     });
     if (is_new) chosen.push_back(candidate);

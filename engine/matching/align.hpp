@@ -9,7 +9,7 @@
 namespace smokemap {
 
 /// One way of laying map a over map b as a whole.
-struct Alignment {
+struct MapAlignment {
   Eigen::Affine2d cells_b_a = Eigen::Affine2d::Identity();  ///< cell of raster a -> cell of raster b
   double score = 0;  ///< likeness of the two depth images under it, 0..1, less what the pins cost
 };
@@ -17,7 +17,7 @@ struct Alignment {
 /// Candidate alignments, best first, different from each other: the walls of both maps are made parallel, then the four
 /// quarter turns (eight with mirror images), a range of scales along both wall directions and all shifts are compared.
 /// Cost: one Fourier transform a candidate, 15..30 ms altogether.
-std::vector<Alignment> find_alignments(const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins,
+std::vector<MapAlignment> find_alignments(const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins,
                                        bool allow_mirror, int count);
 
 }  // namespace smokemap

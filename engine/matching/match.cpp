@@ -106,9 +106,9 @@ std::vector<Hypothesis> hypotheses(const Segmentation& a, const Segmentation& b,
   const MapRaster fine_a = make_raster(a, kFine_cells, kFineSlope_cells);
   const MapRaster fine_b = make_raster(b, kFine_cells, kFineSlope_cells);
   std::vector<Hypothesis> all;
-  for (const Alignment& coarse : find_alignments(coarse_a, coarse_b, pins, params.allow_mirror, params.candidates)) {
+  for (const MapAlignment& coarse : find_alignments(coarse_a, coarse_b, pins, params.allow_mirror, params.candidates)) {
     // From the coarse cells to the fine ones, through pixels.
-    Alignment fine = coarse;
+    MapAlignment fine = coarse;
     Eigen::Affine2d coarse_of_fine_a = Eigen::Affine2d::Identity(), fine_of_coarse_b = Eigen::Affine2d::Identity();
     coarse_of_fine_a.linear() *= fine_a.px_per_cell / coarse_a.px_per_cell;
     coarse_of_fine_a.translation() = coarse_a.to_cells(fine_a.origin_px);

@@ -85,7 +85,7 @@ double root_mean_square_stretch(const MapRaster& a, const cv::Mat& moves, double
 
 }  // namespace
 
-Warp bend(const Alignment& alignment, const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins) {
+Warp bend(const MapAlignment& alignment, const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins) {
   const cv::Mat rigid = affine_field(alignment.cells_b_a, a.depth.size());
   const double scale = std::sqrt(std::abs(alignment.cells_b_a.linear().determinant()));
   cv::Mat gx, gy, moves(a.depth.size(), CV_32FC2, cv::Scalar::all(0));

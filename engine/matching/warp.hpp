@@ -18,6 +18,6 @@ struct Warp {
 
 /// Bends an alignment (Thirion's demons on depth images: each wall moves down the slope of the other map's depth, and the
 /// field of moves is smoothed, first widely, then less). Pins are met.
-Warp bend(const Alignment& alignment, const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins);
+Warp bend(const MapAlignment& alignment, const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins);
 
 }  // namespace smokemap

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kOccupiedPercent = 60;
 constexpr int kFreePercent = 40;
+constexpr double kHalfExitM = 1.0;
 
 /// Draws in cells: row = cell y.
 class Canvas {
@@ -69,17 +70,21 @@ cv::Mat hull_of_plan(const MergedMap& merged, const GridFrame& frame) {
   return inside;
 }
 
-/// Inside the building as drawn: what a flood from outside does not reach; where the outer walls leak, the convex hull.
+/// Inside the building as drawn: what a flood from outside does not reach when gaps in the outer walls up to two metres (exits,
+/// doors the reader missed) are thought closed; where that leaks too, the convex hull.
 cv::Mat inside_of_plan(const MergedMap& merged, const LayoutMap& layout, const GridFrame& frame) {
   Canvas shell(frame);
   for (const MergedWall& wall : merged.walls)
     if (wall.layout_wall) shell.line(wall.segment_map, 255);
   for (const Segment2& gap : openings_map(merged, layout)) shell.line(gap, 255);
+  const int reach = std::max(1, static_cast<int>(std::lround(kHalfExitM / frame.resolution_m)));
+  const cv::Mat disc = cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * reach + 1, 2 * reach + 1});
   cv::Mat thick;
-  cv::dilate(shell.mat(), thick, cv::Mat(), {-1, -1}, 2);
-  cv::Mat outside = thick.clone();
-  cv::floodFill(outside, {0, 0}, cv::Scalar(128));
-  cv::Mat inside = outside != 128;
+  cv::dilate(shell.mat(), thick, disc);
+  cv::floodFill(thick, {0, 0}, cv::Scalar(128));
+  cv::Mat outside;
+  cv::dilate(thick == 128, outside, disc);
+  const cv::Mat inside = outside == 0;
   const cv::Mat hull = hull_of_plan(merged, frame);
   return cv::countNonZero(inside) * 2 >= cv::countNonZero(hull) ? inside : hull;
 }

@@ -139,7 +139,7 @@ TEST(Layering, FilesAndFunctionsKeepTheirSize) {
 
 TEST(Layering, EveryTypeInAHeaderHasANameOfItsOwn) {
   // All of the engine shares one namespace: two types of one name in one program are undefined behaviour without a word.
-  static const std::regex definition(R"(^(struct|class|enum class) ([A-Z][A-Za-z0-9]+)[^;]*\{)");
+  static const std::regex definition(R"(^(struct|class|enum class) ([A-Z][A-Za-z0-9]+)( final)?( :[^;]*)? *\{)");
   std::map<std::string, fs::path> seen;
   for (const char* folder : {"/engine", "/server"})
     for (const auto& entry : fs::recursive_directory_iterator(SMOKEMAP_SOURCE_DIR + std::string(folder))) {

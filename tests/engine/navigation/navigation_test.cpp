@@ -146,6 +146,22 @@ TEST(CostMap, ASeenFreeCellBeatsAWallNobodySaw) {
   EXPECT_NE(map->ground(map->frame().cell_of({3.0, 2.01})), Ground::kBlocked) << "a missing wall blocks nothing";
 }
 
+TEST(CostMap, AnExitThatTheReaderMissedDoesNotFloodTheCorridor) {
+  // A room of 10 m x 6 m with a gap of 1.4 m in its outer wall that is no listed opening.
+  LayoutMap layout;
+  layout.width_px = layout.height_px = 200;
+  layout.scale = LayoutScale{0.1, 0.02, true};
+  MergedMap merged;
+  merged.walls = {wall({0, 0}, {4, 0}, WallState::kUnseen), wall({5.4, 0}, {10, 0}, WallState::kUnseen),
+                  wall({10, 0}, {10, 6}, WallState::kUnseen), wall({10, 6}, {0, 6}, WallState::kUnseen),
+                  wall({0, 6}, {0, 0}, WallState::kUnseen)};
+  const auto map = build_cost_map(merged, OccupancyGrid{}, &layout, {});
+  ASSERT_THAT(map, test::IsOk());
+  EXPECT_EQ(map->ground(map->frame().cell_of({5, 3})), Ground::kPlanned);
+  EXPECT_EQ(map->ground(map->frame().cell_of({5, -1.5})), Ground::kUnknown);
+  EXPECT_THAT(plan_path(*map, {1, 1}, {9, 5}, {}), test::IsOk());
+}
+
 TEST(CostMap, NothingKnownIsAClearAnswer) {
   EXPECT_THAT(build_cost_map(MergedMap{}, OccupancyGrid{}, nullptr, {}), test::Fails(Errc::kDegenerate));
   CostMapParams bad;
