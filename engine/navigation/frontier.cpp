@@ -61,7 +61,7 @@ bool avoided(const Point2& p, const std::vector<Point2>& avoid, double radius_m)
 }  // namespace
 
 std::optional<Frontier> best_frontier(const CostMap& map, const Point2& start, const std::vector<Point2>& avoid,
-                                      const FrontierParams& params) {
+                                      const FrontierParams& params, const std::optional<Point2>& toward) {
   const GridFrame& frame = map.frame();
   const std::vector<float> cost = cost_to_come(map, start, PlannerParams{});
   const bool has_plan = has_planned_ground(map);
@@ -80,7 +80,7 @@ std::optional<Frontier> best_frontier(const CostMap& map, const Point2& start, c
       const Point2 p = frame.center_of(target);
       if (size_m < params.min_size_m || avoided(p, avoid, params.avoid_radius_m)) continue;
       const double way = static_cast<double>(cost[frame.index(target)]);
-      const double score = way - params.gain_per_metre * size_m;
+      const double score = toward ? way + (p - *toward).norm() : way - params.gain_per_metre * size_m;
       if (score < best_score) best_score = score, best = Frontier{p, size_m, way};
     }
   return best;

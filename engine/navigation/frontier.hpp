@@ -20,8 +20,10 @@ struct Frontier {
 };
 
 /// @param avoid places that failed before
+/// @param toward when looking for a way to somewhere: frontiers near to it count as near
 /// Nothing when everything reachable was seen.
 std::optional<Frontier> best_frontier(const CostMap& map, const Point2& start, const std::vector<Point2>& avoid,
-                                      const FrontierParams& params);
+                                      const FrontierParams& params,
+                                      const std::optional<Point2>& toward = std::nullopt);
 
 }  // namespace smokemap

@@ -170,7 +170,7 @@ Result<Path> plan_path(const CostMap& map, const Point2& start, const Point2& go
   const auto to = nearest_drivable(map, goal, params.goal_radius_m);
   if (!to) return unreachable_goal(map, goal);
   Search search(map, *from);
-  if (!search.run(*to)) return fail(Errc::kDegenerate, "no way there is known");
+  if (!search.run(*to)) return fail(Errc::kDegenerate, kNoWayKnown);
   std::vector<Point2> way;
   for (const Cell& cell : search.way_to(*to)) way.push_back(map.frame().center_of(cell));
   std::vector<Point2> points = shorten(map, way);

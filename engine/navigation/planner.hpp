@@ -21,6 +21,9 @@ struct PlannerParams {
   Result<Ok> validate() const;
 };
 
+/// The reason when both places are fine but nothing drivable joins them: the one that a corrected map may cure.
+inline constexpr const char* kNoWayKnown = "no way there is known";
+
 /// The cheapest way (A*, eight neighbours, cost of CostMap), then shortened where the straight line is as good.
 /// kDegenerate with a reason for people: in a wall, outside of everything known, or no way there is known.
 /// Cost: O(cells log cells). Deterministic.

@@ -11,16 +11,13 @@ Result<Ok> FleetParams::validate() const {
   return ParamCheck("FleetParams")
       .positive("stale_after_s", stale_after_s)
       .in_range("lost_after_s", lost_after_s, stale_after_s, 3600)
+      .positive("look_again_s", look_again_s)
       .in_range("explore_pause_s", explore_pause_s, 0, 60)
       .result();
 }
 
 Fleet::Robot& Fleet::robot_of(const std::string& id) {
-  const auto it = robots_.find(id);
-  if (it != robots_.end()) return it->second;
-  Robot robot{RobotStatus{}, Pilot(params_.pilot), {}, {}, {}, {}, {}, 0, false};
-  robot.status.id = id;
-  return robots_.emplace(id, std::move(robot)).first->second;
+  return robots_.try_emplace(id, id, params_.pilot).first->second;
 }
 
 void Fleet::heard(const std::string& robot, Stamp now) { robot_of(robot).status.last_heard = now; }
@@ -83,7 +80,7 @@ void Fleet::steer(Robot& robot, Stamp now, Whiteboard& board, const Carrier& car
   take_target(robot, now, goal, carrier, status.exploring);
   robot.last = robot.pilot.step(now, status.T_map_robot, robot.obstacles_robot);
   commands_->drive(status.id, robot.last.twist.speed_mps, robot.last.twist.turn_rate_radps);
-  settle_goal(robot, goal);
+  settle_goal(robot, now, goal, carrier);
   status.path_map = robot.last.path.points;
   if (status.note.empty()) status.note = robot.last.reason;
   if (!goal && robot.pilot.target() &&
@@ -108,15 +105,12 @@ Goal* Fleet::next_goal(Robot& robot, Whiteboard& board, const Carrier& carrier) 
 void Fleet::take_target(Robot& robot, Stamp now, Goal* goal, const Carrier& carrier, bool explores) {
   if (goal) {
     const Point2 p = *carrier.to_map(goal->place).p;
-    if (robot.status.goal_id == goal->id && robot.pilot.target()) {
-      robot.pilot.move_target(p);
-      return;
-    }
-    robot.status.goal_id = goal->id;
-    robot.pilot.set_target(p, goal->heading_rad);
-    goal->state = GoalState::kSent;
+    if (robot.status.goal_id != goal->id || !robot.pilot.target()) take_goal(robot, *goal, p);
+    else if (robot.detour) (void)look_for_way(robot, now, *goal, p);
+    else robot.pilot.move_target(p);
     return;
   }
+  robot.detour = false;
   if (!robot.status.goal_id.empty()) {  // the goal is done, cancelled or gone
     robot.status.goal_id.clear();
     robot.pilot.set_target(std::nullopt);
@@ -134,8 +128,43 @@ void Fleet::take_target(Robot& robot, Stamp now, Goal* goal, const Carrier& carr
     robot.status.note = "everything that can be reached was seen";
 }
 
-void Fleet::settle_goal(Robot& robot, Goal* goal) {
+void Fleet::take_goal(Robot& robot, Goal& goal, const Point2& p_map) {
+  if (robot.status.goal_id != goal.id) goal.state = GoalState::kSent, robot.avoided.clear();
+  robot.status.goal_id = goal.id;
+  robot.detour = false;
+  robot.pilot.set_target(p_map, goal.heading_rad);
+}
+
+bool Fleet::look_for_way(Robot& robot, Stamp now, const Goal& goal, const Point2& p_map) {
+  const Point2 here = robot.status.T_map_robot.translation();
+  const bool there = robot.detour && (robot.last_detour == PilotState::kArrived || robot.last_detour == PilotState::kGivenUp);
+  if (robot.detour && !there && to_seconds(now - robot.looked_at) < params_.look_again_s) return true;
+  robot.looked_at = now;
+  if (!map_) return false;
+  if (robot.detour && plan_path(*map_, here, p_map, params_.pilot.planner)) {
+    robot.detour = false;
+    robot.pilot.set_target(p_map, goal.heading_rad);
+    return true;
+  }
+  if (robot.detour && !there) return true;
+  if (there && robot.pilot.target()) robot.avoided.push_back(*robot.pilot.target());
+  const auto frontier = best_frontier(*map_, here, robot.avoided, params_.frontier, p_map);
+  robot.detour = frontier.has_value();
+  robot.last_detour = PilotState::kDriving;
+  robot.pilot.set_target(frontier ? frontier->target : p_map);
+  return robot.detour;
+}
+
+void Fleet::settle_goal(Robot& robot, Stamp now, Goal* goal, const Carrier& carrier) {
   if (!goal) return;
+  if (robot.detour) {
+    robot.last_detour = robot.last.state;
+    goal->state = GoalState::kDriving;
+    goal->reason = "no way is known yet: looking for one";
+    return;
+  }
+  const bool no_way = robot.last.state == PilotState::kBlocked && robot.last.path.points.empty() && map_;
+  if (no_way && robot.last.reason == kNoWayKnown && look_for_way(robot, now, *goal, *carrier.to_map(goal->place).p)) return;
   switch (robot.last.state) {
     case PilotState::kArrived: goal->state = GoalState::kArrived, goal->reason.clear(); break;
     case PilotState::kGivenUp:

@@ -27,6 +27,7 @@ struct FleetParams {
   FrontierParams frontier;
   double stale_after_s = 1.0;
   double lost_after_s = 5.0;
+  double look_again_s = 2.0;     ///< between two searches for a way that was not known
   double explore_pause_s = 1.0;  ///< after a place was reached, before the next is chosen
   Result<Ok> validate() const;
 };
@@ -67,13 +68,17 @@ class Fleet {
 
  private:
   struct Robot {
+    Robot(const std::string& id, const PilotParams& params) : pilot(params) { status.id = id; }
     RobotStatus status;
     Pilot pilot;
     Pose2 T_slam_robot;
     Pose2 T_map_slam;
     std::vector<Point2> obstacles_robot;
     PilotOutput last;
-    std::vector<Point2> avoided;  ///< frontiers that could not be reached
+    std::vector<Point2> avoided;  ///< frontiers that could not be reached, or were
+    PilotState last_detour = PilotState::kIdle;
+    bool detour = false;          ///< no way to the goal is known: the pilot looks for one
+    Stamp looked_at = 0;          ///< when a way to the goal was last asked for
     Stamp idle_since = 0;
     bool ever_localized = false;
   };
@@ -82,7 +87,11 @@ class Fleet {
   /// The goal to drive to now; refuses, with the reason, those that have no place.
   Goal* next_goal(Robot& robot, Whiteboard& board, const Carrier& carrier);
   void take_target(Robot& robot, Stamp now, Goal* goal, const Carrier& carrier, bool explores);
-  void settle_goal(Robot& robot, Goal* goal);
+  void take_goal(Robot& robot, Goal& goal, const Point2& p_map);
+  /// A plan that is wrong in a part nobody saw may show no way where there is one: drive to where more can be seen,
+  /// nearest to the goal, until a way is known or nothing is left to look at. False: nothing is left.
+  bool look_for_way(Robot& robot, Stamp now, const Goal& goal, const Point2& p_map);
+  void settle_goal(Robot& robot, Stamp now, Goal* goal, const Carrier& carrier);
   Robot& robot_of(const std::string& id);
 
   FleetParams params_;
