@@ -19,7 +19,7 @@ struct PictureLimits {
   std::size_t max_bytes = 25'000'000;
   double max_megapixels = 40;
   double pdf_megapixels = 10;          ///< resolution is chosen so that a page comes to about this
-  double decode_seconds = 5;           ///< wall and processor time of the decoding process
+  double decode_seconds = 10;          ///< wall and processor time of the decoding process
   std::size_t decode_bytes = 1 << 30;  ///< memory it may take on top of ours
   Result<Ok> validate() const;
 };

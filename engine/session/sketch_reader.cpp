@@ -71,7 +71,7 @@ const PlanRegions* SketchReader::plan_regions(const std::shared_ptr<const Layout
   plan.pixels_per_layout_px = std::min(1.0, kPlanLongSidePx / std::max(layout->layout.width_px, layout->layout.height_px));
   const auto free_space = layout_free_space(layout->layout, plan.pixels_per_layout_px);
   if (!free_space) return nullptr;
-  auto segmentation = segment(*free_space, segmentation_params(MapKind::kLayout));
+  auto segmentation = segment(*free_space, matching_segmentation_params());
   if (!segmentation) return nullptr;
   plan.segmentation = std::move(*segmentation);
   plan.views = views_of(plan.segmentation, plan.pixels_per_layout_px);
@@ -98,7 +98,7 @@ SketchReading SketchReader::read(const SketchMap& sketch, const std::shared_ptr<
   if (!clean) return give_up(clean.error().message);
   view->gaps = clean->gaps;
   if (!clean->warnings.empty()) view->warning = clean->warnings.front();
-  const auto regions = segment(clean->free_space, segmentation_params(MapKind::kSketch));
+  const auto regions = segment(clean->free_space, matching_segmentation_params());
   if (!regions) return give_up(regions.error().message);
   view->regions = views_of(*regions, 1.0);
   if (!plan) return give_up(layout ? "no rooms were found on the plan" : "there is no plan to match the sketch with");
