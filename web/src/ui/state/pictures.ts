@@ -2,6 +2,7 @@
 import type { Api } from '../../link/api';
 
 const kKept = 6;
+const kRetryMs = 10_000;
 
 export class Pictures {
   readonly #api: Api;
@@ -26,7 +27,8 @@ export class Pictures {
   async #load(url: string): Promise<ImageBitmap | null> {
     const answer = await this.#api.blob(url);
     const picture = answer.ok ? await createImageBitmap(answer.value).catch(() => null) : null;
-    if (!picture) this.#known.delete(url);
+    // A picture that failed is asked for again, but not with every message that moves the plan.
+    if (!picture) setTimeout(() => this.#known.delete(url), kRetryMs);
     return picture;
   }
 }
