@@ -69,7 +69,7 @@ describe('tablets and the demo', { timeout: 900_000 }, () => {
     await anna.settled();
     await smokemap.kill();
     await anna.link('No link');
-    await anna.mark([place[0] + 1, place[1]], 'Fire', 'Drawn without a link');
+    await anna.mark([place[0] + 6, place[1]], 'Fire', 'Drawn without a link');
     await anna.page.waitForSelector('text=1 waiting');
     await smokemap.start();
     await anna.link('Live');
