@@ -33,13 +33,15 @@ Result<Ok> AcgParams::validate() const {
 }
 
 PlanFit AutoCompleteGraph::Impl::plan_fit(const SolveInput& input, const Learnt& l) const {
+  constexpr int kViewsForAVerdict = 4;  // one view from the start explains little of any plan
   double linked = 0, all = 0;
+  int views = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    if (nodes.spaced()[i])
+    if (nodes.spaced()[i] && ++views)
       for (const ScanPiece& p : nodes.views()[i].pieces) all += p.segment.length();
   for (const PieceLink& link : input.links) linked += link.weight > 0.3 ? link.part_robot.length() : 0;
   PlanFit fit;
-  if (all < 10 || !l.aligned) return fit;
+  if (all < 10 || views < kViewsForAVerdict || !l.aligned) return fit;
   fit.score = std::min(1.0, linked / all);
   fit.verdict = fit.score >= params.fits_above ? "fits" : fit.score >= params.fits_not_below ? "doubtful" : "does not fit";
   return fit;
