@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kOccupiedPercent = 60;
 constexpr int kFreePercent = 40;
-constexpr double kHalfExitM = 1.0;
+constexpr double kHalfGapM = 2.5;
 
 /// Draws in cells: row = cell y.
 class Canvas {
@@ -70,21 +70,23 @@ cv::Mat hull_of_plan(const MergedMap& merged, const GridFrame& frame) {
   return inside;
 }
 
-/// Inside the building as drawn: what a flood from outside does not reach when gaps in the outer walls up to two metres (exits,
-/// doors the reader missed) are thought closed; where that leaks too, the convex hull.
+/// Everything within `radius_cells` of what is set.
+cv::Mat grown(const cv::Mat& set, double radius_cells) {
+  cv::Mat cells;
+  cv::distanceTransform(set == 0, cells, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  return cells <= radius_cells;
+}
+
+/// Inside the building as drawn: what a flood from outside does not reach when gaps in the outer walls up to five metres (exits,
+/// windows and walls that the reader missed) are thought closed; where that leaks too, the convex hull.
 cv::Mat inside_of_plan(const MergedMap& merged, const LayoutMap& layout, const GridFrame& frame) {
   Canvas shell(frame);
   for (const MergedWall& wall : merged.walls)
     if (wall.layout_wall) shell.line(wall.segment_map, 255);
   for (const Segment2& gap : openings_map(merged, layout)) shell.line(gap, 255);
-  const int reach = std::max(1, static_cast<int>(std::lround(kHalfExitM / frame.resolution_m)));
-  const cv::Mat disc = cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * reach + 1, 2 * reach + 1});
-  cv::Mat thick;
-  cv::dilate(shell.mat(), thick, disc);
+  cv::Mat thick = grown(shell.mat(), kHalfGapM / frame.resolution_m);
   cv::floodFill(thick, {0, 0}, cv::Scalar(128));
-  cv::Mat outside;
-  cv::dilate(thick == 128, outside, disc);
-  const cv::Mat inside = outside == 0;
+  const cv::Mat inside = grown(thick == 128, kHalfGapM / frame.resolution_m) == 0;
   const cv::Mat hull = hull_of_plan(merged, frame);
   return cv::countNonZero(inside) * 2 >= cv::countNonZero(hull) ? inside : hull;
 }

@@ -23,7 +23,7 @@ struct CostMapParams {
   double robot_radius_m = 0.25;
   double soft_clearance_m = 0.40;   ///< beyond the radius: nearer to walls costs more
   double planned_penalty = 1.5;     ///< a metre through rooms nobody saw costs this much more than a metre seen
-  double margin_m = 2.0;            ///< around everything known
+  double margin_m = 3.0;            ///< around everything known
   Result<Ok> validate() const;
 };
 
