@@ -25,7 +25,6 @@ struct LayoutParams {
   double merge_angle_deg = 3.0;      ///< collinear pieces become one wall
   double snap_walls = 1.6;           ///< loose ends within this many thicknesses of a crossing are joined to it
   double max_opening_share = 0.075;  ///< of the plan's long side: wider gaps are no doors
-  double min_wall_confidence = 0.30; ///< less sure walls are left out
 
   // scale
   double door_width_m = 0.90;        ///< what a median door of a public building measures

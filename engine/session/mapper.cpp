@@ -17,10 +17,7 @@ Mapper::Track& Mapper::track_of(const std::string& robot) {
 }
 
 std::optional<PoseReport> Mapper::report(const std::string& robot, Track& track, const Result<ScanOutcome>& outcome) {
-  if (!outcome) {
-    trouble_ = robot + ": " + outcome.error().message;
-    return std::nullopt;
-  }
+  if (!outcome) return std::nullopt;  // malformed: SLAM counted it
   if (outcome->node && robot == map_maker_) changed_ = true;
   PoseReport report;
   report.robot = robot;

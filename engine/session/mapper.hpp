@@ -28,7 +28,6 @@ class Mapper {
   /// The map-making robot's graph, copied when it changed. Never null.
   std::shared_ptr<const PoseGraph> graph();
   const std::string& map_maker() const { return map_maker_; }
-  const std::string& last_trouble() const { return trouble_; }
 
  private:
   struct Track {
@@ -42,7 +41,6 @@ class Mapper {
 
   std::map<std::string, Track> tracks_;
   std::string map_maker_;
-  std::string trouble_;
   bool changed_ = false;
   std::shared_ptr<const PoseGraph> graph_ = std::make_shared<const PoseGraph>();
 };
