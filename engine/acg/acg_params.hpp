@@ -13,28 +13,29 @@ struct AcgParams {
   double stretch_length_m = 4.0;        ///< over this length the local stretch changes
 
   // What a sensor saw.
-  double sigma_point_m = 0.03;          ///< lidar point to wall face
-  double sigma_end_m = 0.05;            ///< end of a wall (door jamb) as seen
-  double min_piece_m = 0.25;            ///< shorter straight pieces of a scan say nothing about a wall
-  double node_spacing_m = 0.35;         ///< nodes nearer to the one before (and turned less than 20 degrees) are left out
+  double sigma_point_m = 0.03;   ///< lidar point to wall face
+  double sigma_end_m = 0.05;     ///< end of a wall (door jamb) as seen
+  double min_piece_m = 0.25;     ///< shorter straight pieces of a scan say nothing about a wall
+  double node_spacing_m = 0.35;  ///< nodes nearer to the one before (and turned less than 20 degrees) are left out
 
   // Association.
   double gate_start_m = 1.0;
   double gate_end_m = 0.25;
   double gate_angle_rad = 0.35;
-  int rounds = 4;                       ///< of association and robust solving, for each update
-  double mature_m = 0.8;                ///< a wall moves by itself only with evidence over this length (or 30 % of its own)
+  int rounds = 4;         ///< of association and robust solving, for each update
+  double mature_m = 0.8;  ///< a wall moves by itself only with evidence over this length (or 30 % of its own)
 
   // Structure.
   double new_wall_min_m = 1.0;
-  double missing_share = 0.5;           ///< of a wall's length that beams went through
-  double moved_m = 0.30;                ///< displacement above which a wall counts as moved rather than confirmed
+  double missing_share = 0.5;  ///< of a wall's length that beams went through
+  double moved_m = 0.30;       ///< displacement above which a wall counts as moved rather than confirmed
 
   // Does the plan fit.
-  double fits_above = 0.80;             ///< share of the sensed wall length that the plan explains: right merges show 0.9, one 2 m off 0.67
+  double fits_above =
+      0.80;  ///< share of the sensed wall length that the plan explains: right merges show 0.9, one 2 m off 0.67
   double fits_not_below = 0.45;
 
-  int covariance_every = 5;             ///< updates between full computations of sigmas; 1 = always
+  int covariance_every = 5;  ///< updates between full computations of sigmas; 1 = always
   Result<Ok> validate() const;
 };
 

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace smokemap {
 namespace {
 
-constexpr double kBeyondEnd_m = 0.15;    ///< a piece may reach this far past a wall's end
+constexpr double kBeyondEnd_m = 0.15;  ///< a piece may reach this far past a wall's end
 constexpr double kMinOverlap_m = 0.20;
 constexpr double kEvidenceBin_m = 0.10;
 
@@ -49,13 +48,15 @@ bool candidate(const Segment2& piece_map, const Segment2& piece_robot, const Poi
 
 }  // namespace
 
-std::vector<PieceLink> link_pieces(const std::vector<NodeView>& views, const std::vector<bool>& use_node, const PlanModel& plan,
-                                   const GraphState& state, const std::vector<double>& gate_m, const AcgParams& params) {
+std::vector<PieceLink> link_pieces(const std::vector<NodeView>& views, const std::vector<bool>& use_node,
+                                   const PlanModel& plan, const GraphState& state, const std::vector<double>& gate_m,
+                                   const AcgParams& params) {
   std::vector<Target> walls;
   for (std::size_t w = 0; w < plan.walls.size(); ++w) {
     const Segment2 s = state.segment(plan.walls[w]);
     const bool usable = plan.walls[w].usable && s.length() >= 0.05;
-    walls.push_back({s.a, s.direction(), s.normal(), s.length(), plan.walls[w].half_thickness_m, usable ? gate_m[w] : 0});
+    walls.push_back(
+        {s.a, s.direction(), s.normal(), s.length(), plan.walls[w].half_thickness_m, usable ? gate_m[w] : 0});
   }
   std::vector<PieceLink> links;
   std::vector<Candidate> found;

@@ -8,12 +8,13 @@
 
 namespace smokemap {
 
-/// Which piece of which scan lies on which wall, with the estimates as they are now. A piece that runs over several walls
-/// in line gives a link to each; of walls side by side the nearest gets it.
+/// Which piece of which scan lies on which wall, with the estimates as they are now. A piece that runs over several
+/// walls in line gives a link to each; of walls side by side the nearest gets it.
 /// @param gate_m  per wall: pieces farther from the wall's face are not linked; <= 0 takes the wall out
 /// Cost: pieces x walls, with a cheap test first.
-std::vector<PieceLink> link_pieces(const std::vector<NodeView>& views, const std::vector<bool>& use_node, const PlanModel& plan,
-                                   const GraphState& state, const std::vector<double>& gate_m, const AcgParams& params);
+std::vector<PieceLink> link_pieces(const std::vector<NodeView>& views, const std::vector<bool>& use_node,
+                                   const PlanModel& plan, const GraphState& state, const std::vector<double>& gate_m,
+                                   const AcgParams& params);
 
 /// How far a linked part is from its wall's face now: rms of both ends.
 double misfit_m(const PieceLink& link, const PlanModel& plan, const GraphState& state);

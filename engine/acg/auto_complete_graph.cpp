@@ -43,7 +43,9 @@ PlanFit AutoCompleteGraph::Impl::plan_fit(const SolveInput& input, const Learnt&
   PlanFit fit;
   if (all < 10 || views < kViewsForAVerdict || !l.aligned) return fit;
   fit.score = std::min(1.0, linked / all);
-  fit.verdict = fit.score >= params.fits_above ? "fits" : fit.score >= params.fits_not_below ? "doubtful" : "does not fit";
+  fit.verdict = fit.score >= params.fits_above       ? "fits"
+                : fit.score >= params.fits_not_below ? "doubtful"
+                                                     : "does not fit";
   return fit;
 }
 
@@ -67,7 +69,8 @@ MergedMap AutoCompleteGraph::Impl::read_out(const PoseGraph& graph, const SolveI
     out.fit = plan_fit(input, l);
   }
   const bool with_plan = !there.empty();
-  read_out_new_walls(find_new_walls(nodes.views(), nodes.spaced(), with_plan ? &*plan : nullptr, l.state, there, params), out);
+  read_out_new_walls(
+      find_new_walls(nodes.views(), nodes.spaced(), with_plan ? &*plan : nullptr, l.state, there, params), out);
   return out;
 }
 
@@ -82,7 +85,8 @@ Result<MergedMap> AutoCompleteGraph::Impl::update(const PoseGraph& graph, const 
       double sharpness = 0.6;
       for (int k = 0; k < params.rounds; ++k, sharpness *= 0.6) {
         const bool poses_fixed = k < params.rounds / 2;
-        if (const auto done = round(work, nodes.spaced(), sharpness, poses_fixed, progress, &input); !done) return done.error();
+        if (const auto done = round(work, nodes.spaced(), sharpness, poses_fixed, progress, &input); !done)
+          return done.error();
         progress.tell(0.6 + 0.3 * (k + 1) / params.rounds, "correcting plan and map");
       }
       if (work.sigma_m.size() != plan->corners.size() || work.updates % params.covariance_every == 0) {

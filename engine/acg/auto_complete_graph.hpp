@@ -27,15 +27,16 @@ enum class WallJudgement { kNone, kGone, kThere };
 ///
 /// One least-squares problem over robot poses, plan corners, the plan's turn and scale, and its drawn lines. The plan
 /// holds together by walls that may stretch but hardly turn, and by lines: what is drawn in line stays in line, and
-/// neighbouring strips of the sheet are stretched alike, so rooms that nobody saw move sensibly too (docs/residuals.md).
-/// Scans speak through straight pieces that lie on one face of a wall, and through seen ends of walls. Links are made
-/// anew with the current estimate in every round and weighted by graduated non-convexity; a wall moves by itself only
-/// with mature evidence.
+/// neighbouring strips of the sheet are stretched alike, so rooms that nobody saw move sensibly too
+/// (docs/residuals.md). Scans speak through straight pieces that lie on one face of a wall, and through seen ends of
+/// walls. Links are made anew with the current estimate in every round and weighted by graduated non-convexity; a wall
+/// moves by itself only with mature evidence.
 ///
 /// The plan is taken up outward from where the robot started, so `update` is meant to be called often, with a growing
 /// graph: warm-started, deterministic, <= 0.3 s at 100 nodes and 400 walls. `map` is SLAM's map frame.
-/// Not thread-safe; one per floor. Source: Mielle, Magnusson, Lilienthal, SSRR 2017 and Robotics 2019 8(2) 40. Differs: scale-free
-/// wall factors, point-to-wall against both corners and the seen face, real robust weights, structure changes.
+/// Not thread-safe; one per floor. Source: Mielle, Magnusson, Lilienthal, SSRR 2017 and Robotics 2019 8(2) 40. Differs:
+/// scale-free wall factors, point-to-wall against both corners and the seen face, real robust weights, structure
+/// changes.
 class AutoCompleteGraph {
  public:
   explicit AutoCompleteGraph(const AcgParams& params = {});
@@ -56,9 +57,9 @@ class AutoCompleteGraph {
   /// kNotFound for a wall that the plan does not have.
   Result<Ok> judge_wall(int layout_wall, WallJudgement judgement);
 
-  /// Takes up what is new in the graph (nodes may be added and poses may be corrected by SLAM; ids must stay) and solves.
-  /// Without a plan, or before the plan is aligned, the answer holds SLAM's trajectory and all sensed walls as new.
-  /// kCancelled, kNotConverged: the state is as before the call.
+  /// Takes up what is new in the graph (nodes may be added and poses may be corrected by SLAM; ids must stay) and
+  /// solves. Without a plan, or before the plan is aligned, the answer holds SLAM's trajectory and all sensed walls as
+  /// new. kCancelled, kNotConverged: the state is as before the call.
   Result<MergedMap> update(const PoseGraph& slam_graph, const Progress& progress = {});
 
  private:
@@ -66,8 +67,8 @@ class AutoCompleteGraph {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A pose at any time from the corrected nodes: the correction of the node before and after, blended, applied to `T_slam_robot`
-/// (the uncorrected pose at that time). `graph` and `merged.trajectory` belong together.
+/// A pose at any time from the corrected nodes: the correction of the node before and after, blended, applied to
+/// `T_slam_robot` (the uncorrected pose at that time). `graph` and `merged.trajectory` belong together.
 Pose2 corrected_pose(const PoseGraph& graph, const MergedMap& merged, Stamp stamp, const Pose2& T_slam_robot);
 
 }  // namespace smokemap

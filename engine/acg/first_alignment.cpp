@@ -13,8 +13,9 @@ constexpr double kCell_m = 0.05;
 constexpr double kMargin_m = 3;
 constexpr std::size_t kMaxHits = 240;
 constexpr int kMaxSide_cells = 4000;
-constexpr double kPriorWeight = 0.02;  ///< of a squared sigma against the share of hits on walls: some 25 independent looks
-constexpr std::size_t kKeep = 5;       ///< alignments that are handed on for a closer look
+constexpr double kPriorWeight =
+    0.02;                         ///< of a squared sigma against the share of hits on walls: some 25 independent looks
+constexpr std::size_t kKeep = 5;  ///< alignments that are handed on for a closer look
 
 /// How well a point of the layout lies on a wall: 1 on a face, falling to 0.
 class WallField {
@@ -26,14 +27,15 @@ class WallField {
     low_.array() -= kMargin_m;
     const Point2 size = (high - low_).array() + kMargin_m;
     cell_m_ = std::max(kCell_m, size.maxCoeff() / kMaxSide_cells);
-    cv::Mat walls(static_cast<int>(size.y() / cell_m_) + 1, static_cast<int>(size.x() / cell_m_) + 1, CV_8U, cv::Scalar(255));
+    cv::Mat walls(static_cast<int>(size.y() / cell_m_) + 1, static_cast<int>(size.x() / cell_m_) + 1, CV_8U,
+                  cv::Scalar(255));
     for (const PlanEdge& w : plan.walls) {
       if (!w.usable) continue;
       const Point2 a = (plan.corners[static_cast<std::size_t>(w.corner_a)] - low_) / cell_m_;
       const Point2 b = (plan.corners[static_cast<std::size_t>(w.corner_b)] - low_) / cell_m_;
       const int thickness = std::max(1, static_cast<int>(std::lround(2 * w.half_thickness_m / cell_m_)));
-      cv::line(walls, {static_cast<int>(a.x()), static_cast<int>(a.y())}, {static_cast<int>(b.x()), static_cast<int>(b.y())},
-               cv::Scalar(0), thickness);
+      cv::line(walls, {static_cast<int>(a.x()), static_cast<int>(a.y())},
+               {static_cast<int>(b.x()), static_cast<int>(b.y())}, cv::Scalar(0), thickness);
     }
     cv::Mat distance;
     cv::distanceTransform(walls, distance, cv::DIST_L2, 5);
@@ -75,7 +77,8 @@ double score_of(const WallField& field, double axis_rad, const std::vector<Point
   const Eigen::Matrix2d m = t.layout_from_map(axis_rad);
   float sum = 0;
   for (const Point2& p : hits_rel)
-    sum += field(t.robot_layout.x() + m(0, 0) * p.x() + m(0, 1) * p.y(), t.robot_layout.y() + m(1, 0) * p.x() + m(1, 1) * p.y());
+    sum += field(t.robot_layout.x() + m(0, 0) * p.x() + m(0, 1) * p.y(),
+                 t.robot_layout.y() + m(1, 0) * p.x() + m(1, 1) * p.y());
   return static_cast<double>(sum) / static_cast<double>(hits_rel.size());
 }
 
@@ -96,8 +99,8 @@ bool alike(const Trial& a, const Trial& b, double metres) {
 }
 
 /// All trials on a lattice around the centre; the best few that are not alike, best first.
-std::vector<Trial> lattice(const Scene& scene, const Trial& center, const Span& shift, const Span& turn, const Span& scale,
-                           const AlignmentSearch* prior, std::size_t keep, double apart_m) {
+std::vector<Trial> lattice(const Scene& scene, const Trial& center, const Span& shift, const Span& turn,
+                           const Span& scale, const AlignmentSearch* prior, std::size_t keep, double apart_m) {
   std::vector<Trial> all;
   const auto steps = [](const Span& s) { return static_cast<int>(std::ceil(s.reach / s.step - 1e-9)); };
   for (int u = -steps(scale); u <= steps(scale); ++u)
@@ -111,9 +114,10 @@ std::vector<Trial> lattice(const Scene& scene, const Trial& center, const Span& 
             t.scale = t.scale.cwiseProduct(Eigen::Vector2d(1 + u * scale.step, 1 + v * scale.step));
             t.score = score_of(scene.field, scene.axis_rad, scene.hits_rel, t);
             if (prior != nullptr)
-              t.score -= kPriorWeight * (std::pow(shift.step * std::hypot(x, y) / prior->sigma_m, 2) +
-                                         std::pow(h * turn.step / prior->sigma_rad, 2) +
-                                         t.scale.array().log().matrix().squaredNorm() / std::pow(prior->scale_sigma, 2));
+              t.score -=
+                  kPriorWeight * (std::pow(shift.step * std::hypot(x, y) / prior->sigma_m, 2) +
+                                  std::pow(h * turn.step / prior->sigma_rad, 2) +
+                                  t.scale.array().log().matrix().squaredNorm() / std::pow(prior->scale_sigma, 2));
             all.push_back(t);
           }
   std::stable_sort(all.begin(), all.end(), [](const Trial& a, const Trial& b) { return a.score > b.score; });
@@ -127,7 +131,8 @@ std::vector<Trial> lattice(const Scene& scene, const Trial& center, const Span& 
 
 Trial refine(const Scene& scene, Trial t) {
   for (const double step : {0.1, 0.04}) {
-    const Trial best = lattice(scene, t, {step, step}, {0.3 * step, 0.15 * step}, {0.3 * step, 0.3 * step}, nullptr, 1, 1).front();
+    const Trial best =
+        lattice(scene, t, {step, step}, {0.3 * step, 0.15 * step}, {0.3 * step, 0.3 * step}, nullptr, 1, 1).front();
     if (best.score > t.score) t = best;
   }
   return t;
@@ -165,7 +170,8 @@ std::vector<Trial> distinct(std::vector<Trial> trials, double apart_m, std::size
   std::stable_sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) { return a.score > b.score; });
   std::vector<Trial> out;
   for (const Trial& t : trials)
-    if (out.size() < keep && std::none_of(out.begin(), out.end(), [&](const Trial& o) { return alike(o, t, apart_m); })) out.push_back(t);
+    if (out.size() < keep && std::none_of(out.begin(), out.end(), [&](const Trial& o) { return alike(o, t, apart_m); }))
+      out.push_back(t);
   return out;
 }
 
@@ -178,14 +184,16 @@ Point2 PlanPlacement::operator*(const Point2& p_layout) const {
 
 Point2 PlanPlacement::inverse(const Point2& p_map) const {
   const Eigen::Matrix2d axes = Pose2(0, 0, axis_rad).rotation();
-  return axes * scale.cwiseInverse().asDiagonal() * axes.transpose() * Pose2(0, 0, -turn_rad).rotation() * (p_map - shift_map);
+  return axes * scale.cwiseInverse().asDiagonal() * axes.transpose() * Pose2(0, 0, -turn_rad).rotation() *
+         (p_map - shift_map);
 }
 
 PlanPlacement PlanPlacement::from(const Similarity2& s, double axis_rad) {
   return {s.T_a_b.heading(), Eigen::Vector2d::Constant(s.scale), axis_rad, s.T_a_b.translation()};
 }
 
-std::vector<Point2> first_hits(const std::vector<NodeView>& views, const GraphState& state, double way_m, double reach_m) {
+std::vector<Point2> first_hits(const std::vector<NodeView>& views, const GraphState& state, double way_m,
+                               double reach_m) {
   std::vector<Point2> all;
   double way = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -205,8 +213,8 @@ std::vector<Point2> first_hits(const std::vector<NodeView>& views, const GraphSt
   return thinned;
 }
 
-Result<std::vector<PlanAlignment>> align_plan(const PlanModel& plan, const std::vector<Point2>& hits_map, const Point2& robot_map,
-                                          const AlignmentSearch& search) {
+Result<std::vector<PlanAlignment>> align_plan(const PlanModel& plan, const std::vector<Point2>& hits_map,
+                                              const Point2& robot_map, const AlignmentSearch& search) {
   if (hits_map.size() < 20) return fail(Errc::kDegenerate, "too little seen to align the plan");
   std::vector<Point2> hits_rel;
   for (const Point2& p : hits_map) hits_rel.push_back(p - robot_map);
@@ -216,7 +224,8 @@ Result<std::vector<PlanAlignment>> align_plan(const PlanModel& plan, const std::
   if (search.guess) {
     const Trial start{search.guess->inverse() * robot_map, search.guess->T_a_b.heading(),
                       Eigen::Vector2d::Constant(search.guess->scale), -1};
-    const double shift = std::clamp(2.5 * search.sigma_m, 0.2, 2.5), turn = std::clamp(2.5 * search.sigma_rad, 0.05, 0.6);
+    const double shift = std::clamp(2.5 * search.sigma_m, 0.2, 2.5),
+                 turn = std::clamp(2.5 * search.sigma_rad, 0.05, 0.6);
     for (Trial t : lattice(coarse, start, {shift, std::max(0.15, shift / 8)}, {turn, std::max(0.03, turn / 6)},
                            {2 * search.scale_sigma, search.scale_sigma}, &search, kKeep, 0.3)) {
       t.score = score_of(fine_field, plan.axis_rad, hits_rel, t);

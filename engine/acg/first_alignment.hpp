@@ -34,14 +34,15 @@ struct PlanAlignment {
   double margin = 1;     ///< without a guess: by how much it beats the best alignment somewhere else, as a share
 };
 
-/// The turn, scale and shift of the plan under which the hits of these nodes lie best on its walls: exhaustive, coarse to
-/// fine, on a distance field. Only nodes within a few metres of way should be given: the plan is stretched.
+/// The turn, scale and shift of the plan under which the hits of these nodes lie best on its walls: exhaustive, coarse
+/// to fine, on a distance field. Only nodes within a few metres of way should be given: the plan is stretched.
 /// kDegenerate without enough hits.
-Result<std::vector<PlanAlignment>> align_plan(const PlanModel& plan, const std::vector<Point2>& hits_map, const Point2& robot_map,
-                             const AlignmentSearch& search);
+Result<std::vector<PlanAlignment>> align_plan(const PlanModel& plan, const std::vector<Point2>& hits_map,
+                                              const Point2& robot_map, const AlignmentSearch& search);
 
 /// Points on the pieces seen by the nodes up to a given way from the first, not farther than `reach_m` from the robot,
 /// thinned to a few hundred.
-std::vector<Point2> first_hits(const std::vector<NodeView>& views, const GraphState& state, double way_m, double reach_m);
+std::vector<Point2> first_hits(const std::vector<NodeView>& views, const GraphState& state, double way_m,
+                               double reach_m);
 
 }  // namespace smokemap

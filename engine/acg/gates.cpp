@@ -9,8 +9,8 @@ namespace smokemap {
 namespace {
 
 constexpr double kNearest_m = 0.20;
-constexpr double kPerMetre = 0.30;      ///< three sigma of ten percent
-constexpr double kSideways = 0.10;      ///< how much less a known wall tells when it lies beside, not opposite
+constexpr double kPerMetre = 0.30;  ///< three sigma of ten percent
+constexpr double kSideways = 0.10;  ///< how much less a known wall tells when it lies beside, not opposite
 constexpr double kNothingKnown_m = 0.5;
 
 /// How many metres of unknown stretch lie between two walls of like direction, in the drawing.
@@ -43,7 +43,8 @@ std::vector<bool> tense_walls(const PlanModel& plan, const GraphState& state, co
     const Segment2 now = state.segment(wall);
     const double heading = state.turn + wall.heading_rad;
     const double across = -std::sin(heading) * (now.b - now.a).x() + std::cos(heading) * (now.b - now.a).y();
-    tense.push_back(std::abs(across) > 3 * std::hypot(params.sigma_wall_turn_rad * wall.length_m, std::sqrt(2.0) * params.sigma_corner_draw_m));
+    tense.push_back(std::abs(across) > 3 * std::hypot(params.sigma_wall_turn_rad * wall.length_m,
+                                                      std::sqrt(2.0) * params.sigma_corner_draw_m));
   }
   return tense;
 }

@@ -8,9 +8,8 @@
 
 namespace smokemap {
 
-/// How far each wall may be from where it is expected: little beside walls that are known already, more the farther away
-/// the nearest known wall of its direction is (the plan may be stretched in between).
-/// Cost: walls squared.
+/// How far each wall may be from where it is expected: little beside walls that are known already, more the farther
+/// away the nearest known wall of its direction is (the plan may be stretched in between). Cost: walls squared.
 std::vector<double> wall_gates_m(const PlanModel& plan, const std::vector<WallState>& walls,
                                  const std::vector<double>& linked_m, const AcgParams& params);
 

@@ -9,8 +9,8 @@
 namespace smokemap {
 namespace {
 
-constexpr double kTakeUp_m = 3.0;         ///< of way between two rounds while the plan is taken up
-constexpr double kFinest_m = 0.08;        ///< last robust width
+constexpr double kTakeUp_m = 3.0;   ///< of way between two rounds while the plan is taken up
+constexpr double kFinest_m = 0.08;  ///< last robust width
 constexpr int kReweights = 2;
 
 }  // namespace
@@ -28,7 +28,7 @@ SolveInput AutoCompleteGraph::Impl::make_input(const Learnt& l, bool poses_fixed
 
 /// One round: links with the estimates as they are, then solves with weights that tighten.
 Result<Ok> AutoCompleteGraph::Impl::round(Learnt& l, const std::vector<bool>& use, double sharpness, bool poses_fixed,
-                                                const Progress& progress, SolveInput* kept) const {
+                                          const Progress& progress, SolveInput* kept) const {
   const std::vector<double> gates = wall_gates_m(*plan, l.walls, l.linked_m, params);
   SolveInput input = make_input(l, poses_fixed);
   input.links = link_pieces(nodes.views(), use, *plan, l.state, gates, params);
@@ -37,7 +37,8 @@ Result<Ok> AutoCompleteGraph::Impl::round(Learnt& l, const std::vector<bool>& us
   const BeamReading beams = read_beams(nodes.views(), use, *plan, l.state, end_gates);
   input.ends = beams.ends;
   for (PieceLink& link : input.links)
-    link.weight = robust_weight(link.misfit_m, std::max(kFinest_m, sharpness * gates[static_cast<std::size_t>(link.wall)]));
+    link.weight =
+        robust_weight(link.misfit_m, std::max(kFinest_m, sharpness * gates[static_cast<std::size_t>(link.wall)]));
   l.linked_m = linked_length_m(input.links, *plan, l.state);
   l.near_m = linked_length_m(input.links, *plan, l.state, 0);
   drop_immature(l.near_m, *plan, params, input.links);

@@ -9,13 +9,13 @@
 namespace smokemap {
 namespace {
 
-constexpr double kAlignWay_m = 4.0;       ///< of way whose scans align the plan to a start
-constexpr double kAlignReach_m = 5.0;     ///< farther hits would see too much of the plan's stretch
+constexpr double kAlignWay_m = 4.0;    ///< of way whose scans align the plan to a start
+constexpr double kAlignReach_m = 5.0;  ///< farther hits would see too much of the plan's stretch
 constexpr double kGlobalReach_m = 8.0;
-constexpr double kCloserLook_m = 9.0;     ///< of way on which rival alignments are compared
-constexpr double kTension = 0.02;         ///< share of explained length that one squared sigma per wall is worth
-constexpr double kGlobalWay_m = 8.0;      ///< the same without any hint
-constexpr double kGlobalExplained = 0.55; ///< share of hits on walls before an alignment without a hint is believed
+constexpr double kCloserLook_m = 9.0;      ///< of way on which rival alignments are compared
+constexpr double kTension = 0.02;          ///< share of explained length that one squared sigma per wall is worth
+constexpr double kGlobalWay_m = 8.0;       ///< the same without any hint
+constexpr double kGlobalExplained = 0.55;  ///< share of hits on walls before an alignment without a hint is believed
 constexpr double kGlobalMargin = 0.06;
 
 }  // namespace
@@ -122,7 +122,8 @@ std::vector<AnchorLink> AutoCompleteGraph::Impl::anchor_links() const {
     for (std::size_t k = 2; k < order.size(); ++k) {
       const Point2 u = at(order[1]) - at(order[0]), v = at(order[k]) - at(order[0]);
       if (u.norm() < 0.05 || std::abs(u.x() * v.y() - u.y() * v.x()) < 0.3 * u.norm() * v.norm()) continue;
-      links.push_back({{order[0], order[1], order[k]}, barycentric(p, at(order[0]), at(order[1]), at(order[k])), a.p_map});
+      links.push_back(
+          {{order[0], order[1], order[k]}, barycentric(p, at(order[0]), at(order[1]), at(order[k])), a.p_map});
       break;
     }
   }

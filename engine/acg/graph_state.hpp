@@ -42,7 +42,7 @@ struct EndLink {
   int other_corner = 0;  ///< the wall's other one
   Point2 end_robot = Point2::Zero();
   double sigma_m = 0.05;
-  double misfit_m = 0;   ///< along the wall when linked, signed, outwards positive
+  double misfit_m = 0;  ///< along the wall when linked, signed, outwards positive
   double weight = 1;
 };
 

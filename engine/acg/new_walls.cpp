@@ -9,16 +9,17 @@ namespace smokemap {
 namespace {
 
 constexpr double kStep_m = 0.10;
-constexpr double kExplained_m = 0.25;     ///< from a wall's face
+constexpr double kExplained_m = 0.25;  ///< from a wall's face
 constexpr double kMinFragment_m = 0.25;
 constexpr double kSameLine_m = 0.10;
 constexpr double kSameTurn_rad = 0.12;
 constexpr double kHole_m = 0.35;
-constexpr double kHalfThickness_m = 0.06; ///< of a wall that was seen from one side only
-constexpr double kTied_m = 0.40;          ///< from a new wall's end to another wall
-constexpr double kFurniture_m = 1.00;     ///< depth in front of a wall at which furniture stands
+constexpr double kHalfThickness_m = 0.06;  ///< of a wall that was seen from one side only
+constexpr double kTied_m = 0.40;           ///< from a new wall's end to another wall
+constexpr double kFurniture_m = 1.00;      ///< depth in front of a wall at which furniture stands
 constexpr double kSurelyWall_m = 3.0;
-constexpr double kSide_m = 0.30;          ///< depth from which a thing behind the end of a face is furniture, not a wall's thickness
+constexpr double kSide_m =
+    0.30;  ///< depth from which a thing behind the end of a face is furniture, not a wall's thickness
 
 /// Part of a piece that nothing explains, map frame, free space on the left.
 struct Fragment {
@@ -46,7 +47,8 @@ bool explained(const Point2& p, const std::vector<KnownWall>& known) {
                      [&](const KnownWall& k) { return distance(k.segment, p) < k.half + kExplained_m; });
 }
 
-void add_fragments(const Segment2& piece, std::size_t node, const std::vector<KnownWall>& known, std::vector<Fragment>& out) {
+void add_fragments(const Segment2& piece, std::size_t node, const std::vector<KnownWall>& known,
+                   std::vector<Fragment>& out) {
   const int steps = std::max(1, static_cast<int>(piece.length() / kStep_m));
   const auto at = [&](int i) -> Point2 { return piece.a + (static_cast<double>(i) / steps) * (piece.b - piece.a); };
   int from = 0;
@@ -105,7 +107,8 @@ std::optional<FoundLine> grow(Fragment& seed, std::vector<Fragment>& all) {
   const Point2 u = line.direction();
   double low = 1e9, high = -1e9;
   for (const Fragment* f : parts)
-    for (const Point2& p : {f->segment.a, f->segment.b}) low = std::min(low, u.dot(p - line.a)), high = std::max(high, u.dot(p - line.a));
+    for (const Point2& p : {f->segment.a, f->segment.b})
+      low = std::min(low, u.dot(p - line.a)), high = std::max(high, u.dot(p - line.a));
   const auto bins = static_cast<std::size_t>((high - low) / kStep_m) + 1;
   std::vector<int> nodes(bins, 0);
   std::vector<std::size_t> last(bins, static_cast<std::size_t>(-1));
@@ -121,8 +124,10 @@ std::optional<FoundLine> grow(Fragment& seed, std::vector<Fragment>& all) {
   const auto reach = [&](int step) {
     int end = middle, empty = 0;
     for (int i = middle; i >= 0 && i < count && empty <= hole; i += step) {
-      if (nodes[static_cast<std::size_t>(i)] >= 2) end = i, empty = 0;
-      else ++empty;
+      if (nodes[static_cast<std::size_t>(i)] >= 2)
+        end = i, empty = 0;
+      else
+        ++empty;
     }
     return end;
   };
@@ -178,14 +183,16 @@ bool turns_away(const Segment2& face, const Point2& end, const std::vector<Fragm
   });
 }
 
-/// Walls hang together: how a candidate's ends meet others, and whether it is only the front of something before a wall.
+/// Walls hang together: how a candidate's ends meet others, and whether it is only the front of something before a
+/// wall.
 bool built_like_a_wall(const FoundLine& line, const std::vector<FoundLine>& others, const std::vector<KnownWall>& known,
                        const std::vector<Fragment>& fragments) {
   const Segment2& s = line.segment;
   int tied = 0;
   for (const Point2& end : {s.a, s.b}) {
     if (turns_away(s, end, fragments)) return false;
-    bool meets = std::any_of(known.begin(), known.end(), [&](const KnownWall& k) { return distance(k.segment, end) < k.half + kTied_m; });
+    bool meets = std::any_of(known.begin(), known.end(),
+                             [&](const KnownWall& k) { return distance(k.segment, end) < k.half + kTied_m; });
     for (const FoundLine& o : others)
       meets = meets || (&o != &line && o.segment.length() > 1.0 && distance(o.segment, end) < kTied_m);
     tied += meets;
@@ -202,8 +209,9 @@ bool built_like_a_wall(const FoundLine& line, const std::vector<FoundLine>& othe
 
 }  // namespace
 
-std::vector<NewWall> find_new_walls(const std::vector<NodeView>& views, const std::vector<bool>& use_node, const PlanModel* plan,
-                                    const GraphState& state, const std::vector<bool>& there, const AcgParams& params) {
+std::vector<NewWall> find_new_walls(const std::vector<NodeView>& views, const std::vector<bool>& use_node,
+                                    const PlanModel* plan, const GraphState& state, const std::vector<bool>& there,
+                                    const AcgParams& params) {
   const std::vector<KnownWall> known = known_walls(plan, state, there);
   std::vector<Fragment> fragments;
   for (std::size_t node = 0; node < views.size(); ++node) {
@@ -224,7 +232,8 @@ std::vector<NewWall> find_new_walls(const std::vector<NodeView>& views, const st
   std::vector<NewWall> out;
   for (const FoundLine& line : lines) {
     if (line.segment.length() < params.new_wall_min_m || !built_like_a_wall(line, lines, known, fragments)) continue;
-    out.push_back({line.segment, line.evidence_m, std::clamp(line.evidence_m / (line.segment.length() + 0.5), 0.1, 0.95)});
+    out.push_back(
+        {line.segment, line.evidence_m, std::clamp(line.evidence_m / (line.segment.length() + 0.5), 0.1, 0.95)});
   }
   return out;
 }

@@ -15,11 +15,12 @@ struct NewWall {
   double confidence = 0;  ///< 0..1
 };
 
-/// Lines through the pieces that no wall of the plan explains: seen by two nodes or more, at least `new_wall_min_m` long, and
-/// tied to other walls the way walls are; furniture stands free or close in front of a wall.
+/// Lines through the pieces that no wall of the plan explains: seen by two nodes or more, at least `new_wall_min_m`
+/// long, and tied to other walls the way walls are; furniture stands free or close in front of a wall.
 /// @param there per wall of the plan: false for one that is missing in reality and explains nothing
 /// Ordered by position. Deterministic.
-std::vector<NewWall> find_new_walls(const std::vector<NodeView>& views, const std::vector<bool>& use_node, const PlanModel* plan,
-                                    const GraphState& state, const std::vector<bool>& there, const AcgParams& params);
+std::vector<NewWall> find_new_walls(const std::vector<NodeView>& views, const std::vector<bool>& use_node,
+                                    const PlanModel* plan, const GraphState& state, const std::vector<bool>& there,
+                                    const AcgParams& params);
 
 }  // namespace smokemap

@@ -50,7 +50,8 @@ void NodeStore::take(const PoseGraph& graph, GraphState& state) {
 double NodeStore::edge_cost(const GraphState& state) const {
   double cost = 0;
   for (const PoseEdge& e : edges_) {
-    const Pose2 between = state.pose(static_cast<std::size_t>(e.from)).inverse() * state.pose(static_cast<std::size_t>(e.to));
+    const Pose2 between =
+        state.pose(static_cast<std::size_t>(e.from)).inverse() * state.pose(static_cast<std::size_t>(e.to));
     Eigen::Vector3d error = between.vector() - e.T_from_to.vector();
     error[2] = wrap_angle(error[2]);
     cost += std::min(100.0, (e.sqrt_information * error).squaredNorm());
@@ -65,7 +66,8 @@ void NodeStore::mark_spaced(const GraphState& state) {
   for (std::size_t i = 0; i < views_.size(); ++i) {
     if (i > 0) way_m_[i] = way_m_[i - 1] + (state.pose(i).translation() - state.pose(i - 1).translation()).norm();
     const Pose2 step = state.pose(last).inverse() * state.pose(i);
-    if (i > 0 && step.translation().norm() < params_.node_spacing_m && std::abs(step.heading()) < kSpacingTurn_rad) continue;
+    if (i > 0 && step.translation().norm() < params_.node_spacing_m && std::abs(step.heading()) < kSpacingTurn_rad)
+      continue;
     spaced_[i] = true;
     last = i;
   }

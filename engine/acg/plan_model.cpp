@@ -96,7 +96,9 @@ void find_gaps(PlanModel& model) {
     for (std::size_t j = 0; j < model.corners.size(); ++j) {
       const Point2 d = model.corners[j] - here;
       const double ahead = away.dot(d), aside = std::abs(away.x() * d.y() - away.y() * d.x());
-      if (static_cast<int>(j) == i || model.degree[j] == 0 || ahead < 0.3 || ahead > best_m || aside > 0.05 + 0.08 * ahead) continue;
+      if (static_cast<int>(j) == i || model.degree[j] == 0 || ahead < 0.3 || ahead > best_m ||
+          aside > 0.05 + 0.08 * ahead)
+        continue;
       best = static_cast<int>(j);
       best_m = ahead;
     }

@@ -17,15 +17,19 @@ Similarity2 rigid_plan(const SolvedPlan& solved) {
   return fit.ok() ? *fit : Similarity2{};
 }
 
-constexpr double kNothingNear = 0.3;  ///< of a wall's length: pieces within its gate there say that it is misplaced, not missing
+constexpr double kNothingNear =
+    0.3;  ///< of a wall's length: pieces within its gate there say that it is misplaced, not missing
 
 double confidence_of(WallState state, const WallEvidence& evidence) {
   const double length = std::max(0.1, evidence.length_m());
   switch (state) {
     case WallState::kConfirmed:
-    case WallState::kMoved: return std::clamp(0.5 + 0.5 * evidence.hit_m() / length, 0.5, 0.98);
-    case WallState::kMissing: return std::clamp(evidence.through_m() / length, 0.3, 0.98);
-    default: return std::clamp(0.6 - 0.5 * evidence.through_m() / length, 0.1, 0.6);
+    case WallState::kMoved:
+      return std::clamp(0.5 + 0.5 * evidence.hit_m() / length, 0.5, 0.98);
+    case WallState::kMissing:
+      return std::clamp(evidence.through_m() / length, 0.3, 0.98);
+    default:
+      return std::clamp(0.6 - 0.5 * evidence.through_m() / length, 0.1, 0.6);
   }
 }
 
@@ -68,7 +72,9 @@ void read_links(const SolvedPlan& solved, MergedMap& out) {
       for (const Point2& end : {link.part_robot.a, link.part_robot.b}) {
         const Point2 p = pose * end;
         if ((p - solved.state->corner(c)).norm() > 0.4) continue;
-        const auto state = link.weight > 0.5 ? LinkState::kKept : link.weight > 0.1 ? LinkState::kDoubtful : LinkState::kRejected;
+        const auto state = link.weight > 0.5   ? LinkState::kKept
+                           : link.weight > 0.1 ? LinkState::kDoubtful
+                                               : LinkState::kRejected;
         out.links.push_back({p, c, state});
       }
   }
@@ -79,7 +85,8 @@ void read_links(const SolvedPlan& solved, MergedMap& out) {
 WallState judge_wall_state(const WallEvidence& evidence, double linked_m, double near_m, const AcgParams& params) {
   const double length = std::max(0.05, evidence.length_m());
   const double hit = evidence.hit_m() / length, through = evidence.through_m() / length;
-  if (through >= params.missing_share && hit < 0.5 * through && near_m < kNothingNear * length) return WallState::kMissing;
+  if (through >= params.missing_share && hit < 0.5 * through && near_m < kNothingNear * length)
+    return WallState::kMissing;
   if (hit >= 0.25 || evidence.hit_m() > params.mature_m || linked_m > params.mature_m) return WallState::kConfirmed;
   return WallState::kUnseen;
 }

@@ -16,10 +16,10 @@ struct SolvedPlan {
   const LayoutMap* layout = nullptr;
   const PlanModel* plan = nullptr;
   const GraphState* state = nullptr;
-  std::vector<WallEvidence> evidence;       ///< per wall
-  std::vector<double> linked_m;             ///< per wall
-  std::vector<WallState> wall_states;       ///< per wall
-  std::vector<double> corner_sigma_m;       ///< per corner
+  std::vector<WallEvidence> evidence;  ///< per wall
+  std::vector<double> linked_m;        ///< per wall
+  std::vector<WallState> wall_states;  ///< per wall
+  std::vector<double> corner_sigma_m;  ///< per corner
   std::vector<PieceLink> links;
 };
 

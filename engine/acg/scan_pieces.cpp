@@ -9,8 +9,8 @@
 namespace smokemap {
 namespace {
 
-constexpr double kBend_m = 0.06;      ///< a hit this far from the chord begins a new piece
-constexpr double kFitRms_m = 0.035;   ///< rougher runs are no walls
+constexpr double kBend_m = 0.06;     ///< a hit this far from the chord begins a new piece
+constexpr double kFitRms_m = 0.035;  ///< rougher runs are no walls
 constexpr int kMinHits = 5;
 
 bool neighbours(const Point2& a, const Point2& b) {

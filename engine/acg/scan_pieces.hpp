@@ -29,8 +29,8 @@ struct NodeView {
   std::vector<ScanRay> rays;  ///< ascending bearing
 };
 
-/// Splits the hits, ordered by bearing, where neighbours are far apart and where they bend (recursive split, total least
-/// squares fit). Cost: O(n log n). Deterministic.
+/// Splits the hits, ordered by bearing, where neighbours are far apart and where they bend (recursive split, total
+/// least squares fit). Cost: O(n log n). Deterministic.
 NodeView view_of(const PoseNode& node, const AcgParams& params);
 
 }  // namespace smokemap

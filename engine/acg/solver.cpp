@@ -26,12 +26,13 @@ constexpr double kUnmodelled_m = 0.025;  ///< drawn wall thickness against the t
 /// A weight that does not depend on the residual: the robust scheme sets it between solves.
 ceres::LossFunction* weighted(double weight) { return new ceres::ScaledLoss(nullptr, weight, ceres::TAKE_OWNERSHIP); }
 
-/// The state in one piece of memory. Ceres orders blocks by address: in one piece the order, and with it every last bit of
-/// the answer, is the same in each run.
+/// The state in one piece of memory. Ceres orders blocks by address: in one piece the order, and with it every last bit
+/// of the answer, is the same in each run.
 class ParameterBlocks {
  public:
   explicit ParameterBlocks(const GraphState& state)
-      : corners_at_(3 * state.poses.size()), plan_at_(corners_at_ + 2 * state.corners.size()),
+      : corners_at_(3 * state.poses.size()),
+        plan_at_(corners_at_ + 2 * state.corners.size()),
         lines_at_{plan_at_ + 2, plan_at_ + 2 + state.lines[0].size()} {
     for (const auto& pose : state.poses) values_.insert(values_.end(), pose.begin(), pose.end());
     for (const auto& corner : state.corners) values_.insert(values_.end(), corner.begin(), corner.end());
@@ -119,7 +120,8 @@ class ProblemBuilder {
     for (std::size_t k = 0; k + 1 < drawn.size(); ++k) {
       const double width = drawn[k + 1] - drawn[k];
       if (k == 0) {
-        problem.AddResidualBlock(StripStretchCost::Create(width, sigma), nullptr, line(0), line(1), blocks_.log_scale());
+        problem.AddResidualBlock(StripStretchCost::Create(width, sigma), nullptr, line(0), line(1),
+                                 blocks_.log_scale());
         continue;
       }
       const double before = drawn[k] - drawn[k - 1], apart = 0.5 * (width + before);
@@ -167,8 +169,9 @@ class StopWhenAsked final : public ceres::IterationCallback {
 /// J^T J of the whole problem, with a whisper on the diagonal for what nothing speaks about.
 Eigen::SparseMatrix<double> normal_matrix(const ceres::CRSMatrix& jacobian) {
   using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-  const Eigen::Map<const Rows> rows(jacobian.num_rows, jacobian.num_cols, static_cast<Eigen::Index>(jacobian.values.size()),
-                                    jacobian.rows.data(), jacobian.cols.data(), jacobian.values.data());
+  const Eigen::Map<const Rows> rows(jacobian.num_rows, jacobian.num_cols,
+                                    static_cast<Eigen::Index>(jacobian.values.size()), jacobian.rows.data(),
+                                    jacobian.cols.data(), jacobian.values.data());
   const Eigen::SparseMatrix<double> columns(rows);
   Eigen::SparseMatrix<double> normal = columns.transpose() * columns;
   Eigen::SparseMatrix<double> whisper(normal.rows(), normal.cols());

@@ -12,12 +12,13 @@ namespace smokemap {
 
 /// One round's problem: what is known, and with what weight.
 struct SolveInput {
-  const PlanModel* plan = nullptr;              ///< none: poses only
-  std::vector<PoseEdge> edges;                  ///< from, to: positions in GraphState::poses
+  const PlanModel* plan = nullptr;  ///< none: poses only
+  std::vector<PoseEdge> edges;      ///< from, to: positions in GraphState::poses
   std::vector<PieceLink> links;
   std::vector<EndLink> ends;
   std::vector<AnchorLink> anchors;
-  std::vector<double> wall_firmness;            ///< per wall 0..1: how much the plan's shape counts (low for a wall that is not there)
+  std::vector<double>
+      wall_firmness;  ///< per wall 0..1: how much the plan's shape counts (low for a wall that is not there)
   bool poses_fixed = false;
   int iterations = 10;
 };
@@ -26,9 +27,9 @@ struct SolveInput {
 /// kNotConverged when the answer is not usable (the state is then unchanged), kCancelled on request.
 Result<Ok> solve(const SolveInput& input, const AcgParams& params, const Progress& progress, GraphState& state);
 
-/// One standard deviation per coordinate of every corner, from the inverse of the normal equations at the solution, plus what
-/// the model leaves out (wall thickness, a sensor's own bias).
-/// Cost: one sparse factorisation and two solves a corner.
+/// One standard deviation per coordinate of every corner, from the inverse of the normal equations at the solution,
+/// plus what the model leaves out (wall thickness, a sensor's own bias). Cost: one sparse factorisation and two solves
+/// a corner.
 Result<std::vector<double>> corner_sigmas_m(const SolveInput& input, const AcgParams& params, const GraphState& state);
 
 }  // namespace smokemap

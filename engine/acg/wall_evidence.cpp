@@ -10,8 +10,8 @@
 namespace smokemap {
 namespace {
 
-constexpr double kReach_m = 12;          ///< beams are too far apart beyond
-constexpr double kBeyondEnd_m = 1.0;     ///< how far past a free end is looked
+constexpr double kReach_m = 12;       ///< beams are too far apart beyond
+constexpr double kBeyondEnd_m = 1.0;  ///< how far past a free end is looked
 constexpr double kFaceTolerance_m = 0.12;
 constexpr double kClearBehind_m = 0.15;  ///< a beam went through if it reached this much farther
 constexpr double kGrazing = 0.20;        ///< sine of the flattest angle that says something
@@ -53,9 +53,9 @@ Reading read_ray(const Sight& sight, const ScanRay& ray) {
 template <typename Visit>
 void rays_between(const std::vector<ScanRay>& rays, double from, double to, const Visit& visit) {
   const auto first = [&](double bearing) {
-    return static_cast<std::size_t>(
-        std::lower_bound(rays.begin(), rays.end(), bearing, [](const ScanRay& r, double b) { return r.bearing_rad < b; }) -
-        rays.begin());
+    return static_cast<std::size_t>(std::lower_bound(rays.begin(), rays.end(), bearing,
+                                                     [](const ScanRay& r, double b) { return r.bearing_rad < b; }) -
+                                    rays.begin());
   };
   if (from <= to) {
     for (std::size_t i = first(from); i < rays.size() && rays[i].bearing_rad <= to; ++i) visit(i);
@@ -127,9 +127,8 @@ std::vector<EndLink> best_ends(const std::vector<EndLink>& all) {
     const double median = misfits[misfits.size() / 2];
     std::erase_if(ends, [&](const EndLink& e) { return std::abs(e.misfit_m - median) > 0.10; });
     if (ends.size() < 2) continue;
-    std::stable_sort(ends.begin(), ends.end(), [](const EndLink& a, const EndLink& b) {
-      return a.end_robot.norm() < b.end_robot.norm();
-    });
+    std::stable_sort(ends.begin(), ends.end(),
+                     [](const EndLink& a, const EndLink& b) { return a.end_robot.norm() < b.end_robot.norm(); });
     ends.resize(std::min(ends.size(), kEndsPerCorner));
     out.insert(out.end(), ends.begin(), ends.end());
   }
@@ -169,7 +168,8 @@ BeamReading read_beams(const std::vector<NodeView>& views, const std::vector<boo
     if (!use_node[node]) continue;
     const Pose2 pose = state.pose(node), T_robot_map = pose.inverse();
     for (std::size_t w = 0; w < walls.size(); ++w) {
-      if (!plan.walls[w].usable || walls[w].length() < 0.05 || distance(walls[w], pose.translation()) > kReach_m) continue;
+      if (!plan.walls[w].usable || walls[w].length() < 0.05 || distance(walls[w], pose.translation()) > kReach_m)
+        continue;
       Sight sight;
       sight.origin = T_robot_map * walls[w].a;
       sight.u = (T_robot_map * walls[w].b - sight.origin).normalized();
@@ -190,7 +190,8 @@ BeamReading read_beams(const std::vector<NodeView>& views, const std::vector<boo
         link.wall = static_cast<int>(w);
         link.corner = at_b ? plan.walls[w].corner_b : plan.walls[w].corner_a;
         link.other_corner = at_b ? plan.walls[w].corner_a : plan.walls[w].corner_b;
-        if (find_end(all, sight, views[node].rays, at_b ? 1 : -1, end_gate_m[w], link) && link.end_robot.norm() < kEndReach_m)
+        if (find_end(all, sight, views[node].rays, at_b ? 1 : -1, end_gate_m[w], link) &&
+            link.end_robot.norm() < kEndReach_m)
           ends.push_back(link);
       }
     }

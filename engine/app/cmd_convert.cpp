@@ -29,7 +29,8 @@ void run_convert(const ConvertArguments& arguments, Outcome& outcome) {
 
 void add_convert(CLI::App& app, Outcome& outcome) {
   auto arguments = std::make_shared<ConvertArguments>();
-  CLI::App* command = app.add_subcommand("convert", "sensor log (CARMEN, rosbag2 .db3, MCAP) -> MCAP that ROS 2 tools open");
+  CLI::App* command =
+      app.add_subcommand("convert", "sensor log (CARMEN, rosbag2 .db3, MCAP) -> MCAP that ROS 2 tools open");
   command->add_option("log", arguments->log, "the log, or a rosbag2 folder")->required();
   command->add_option("output", arguments->output, "the MCAP file to write")->required();
   command->callback([arguments, &outcome] { run_convert(*arguments, outcome); });

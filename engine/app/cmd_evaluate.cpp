@@ -29,7 +29,8 @@ Result<std::vector<std::vector<double>>> read_numbers(const std::string& path, s
     std::vector<double> row;
     for (double value; words >> value;) row.push_back(value);
     if (row.empty() && words.eof()) continue;
-    if (row.size() < least || !words.eof()) return fail(Errc::kCorrupt, path + ":" + std::to_string(number) + ": expected numbers");
+    if (row.size() < least || !words.eof())
+      return fail(Errc::kCorrupt, path + ":" + std::to_string(number) + ": expected numbers");
     rows.push_back(std::move(row));
   }
   return rows;
@@ -41,7 +42,8 @@ Result<Trajectory> read_trajectory(const std::string& path) {
   if (!rows) return rows.error();
   Trajectory poses;
   for (const std::vector<double>& r : *rows) {
-    const double heading = r.size() >= 8 ? std::atan2(2 * (r[7] * r[6] + r[4] * r[5]), 1 - 2 * (r[5] * r[5] + r[6] * r[6])) : r[3];
+    const double heading =
+        r.size() >= 8 ? std::atan2(2 * (r[7] * r[6] + r[4] * r[5]), 1 - 2 * (r[5] * r[5] + r[6] * r[6])) : r[3];
     poses.push_back({from_seconds(r[0]), Pose2(r[1], r[2], heading), Eigen::Matrix3d::Zero()});
   }
   return poses;
@@ -51,12 +53,16 @@ Result<std::vector<PoseRelation>> read_relations(const std::string& path) {
   const auto rows = read_numbers(path, 8);
   if (!rows) return rows.error();
   std::vector<PoseRelation> relations;
-  for (const std::vector<double>& r : *rows) relations.push_back({from_seconds(r[0]), from_seconds(r[1]), Pose2(r[2], r[3], r[7])});
+  for (const std::vector<double>& r : *rows)
+    relations.push_back({from_seconds(r[0]), from_seconds(r[1]), Pose2(r[2], r[3], r[7])});
   return relations;
 }
 
 nlohmann::json to_json(const ErrorSpread& spread, double scale) {
-  return {{"mean", spread.mean * scale}, {"std", spread.stddev * scale}, {"median", spread.median * scale}, {"max", spread.most * scale}};
+  return {{"mean", spread.mean * scale},
+          {"std", spread.stddev * scale},
+          {"median", spread.median * scale},
+          {"max", spread.most * scale}};
 }
 
 Result<nlohmann::json> against_relations(const Trajectory& estimate, const EvaluateOptions& options) {
@@ -95,7 +101,8 @@ Result<nlohmann::json> against_truth(const Trajectory& estimate, const EvaluateO
 }
 
 Result<Ok> run_evaluate(const EvaluateOptions& options) {
-  if (options.relations.empty() && options.truth.empty()) return fail(Errc::kInvalidArgument, "evaluate: give --relations or --truth");
+  if (options.relations.empty() && options.truth.empty())
+    return fail(Errc::kInvalidArgument, "evaluate: give --relations or --truth");
   const auto estimate = read_trajectory(options.trajectory);
   if (!estimate) return estimate.error();
   nlohmann::json report;
@@ -117,13 +124,17 @@ Result<Ok> run_evaluate(const EvaluateOptions& options) {
 
 void add_evaluate(CLI::App& app, Outcome& outcome) {
   auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* command = app.add_subcommand("evaluate", "errors of a trajectory: relations, ATE, displacement (Paper VI); prints JSON");
+  CLI::App* command =
+      app.add_subcommand("evaluate", "errors of a trajectory: relations, ATE, displacement (Paper VI); prints JSON");
   command->add_option("trajectory", options->trajectory, "TUM, or 't x y heading' a line")->required();
   command->add_option("--relations", options->relations, "'t1 t2 x y z roll pitch yaw' a line");
   command->add_option("--log", options->log, "the log: its odometry fills stamps between scans");
   command->add_option("--truth", options->truth, "true trajectory, in either form");
-  command->add_option("--lever", options->lever, "x,y of the point of the robot whose pose the truth gives, metres")->delimiter(',')->expected(2);
-  command->add_option("--max-dt", options->longest_gap_s, "seconds a pose may be away from a stamp")->capture_default_str();
+  command->add_option("--lever", options->lever, "x,y of the point of the robot whose pose the truth gives, metres")
+      ->delimiter(',')
+      ->expected(2);
+  command->add_option("--max-dt", options->longest_gap_s, "seconds a pose may be away from a stamp")
+      ->capture_default_str();
   command->callback([options, &outcome] {
     if (const auto done = run_evaluate(*options); !done) outcome.no_answer(done.error());
   });

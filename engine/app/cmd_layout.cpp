@@ -25,8 +25,9 @@ struct LayoutArguments {
   int page = 1;
 };
 
-/// The document as written: `corners` lists places where walls of different directions meet. Ends of walls at doors follow from
-/// `walls` (the reader of the format puts them back), so that a corner in the file is what a person calls a corner.
+/// The document as written: `corners` lists places where walls of different directions meet. Ends of walls at doors
+/// follow from `walls` (the reader of the format puts them back), so that a corner in the file is what a person calls a
+/// corner.
 std::string document(const LayoutReading& reading) {
   LayoutDocument whole{reading.layout, reading.homography, reading.sheet_corners_px};
   auto json = nlohmann::json::parse(to_json(whole));
@@ -38,7 +39,8 @@ std::string document(const LayoutReading& reading) {
   }
   auto corners = nlohmann::json::array();
   for (std::size_t c = 0; c < map.corners.size(); ++c) {
-    const bool turns = std::any_of(headings[c].begin(), headings[c].end(), [&](double h) { return line_angle_between(h, headings[c].front()) > radians(20); });
+    const bool turns = std::any_of(headings[c].begin(), headings[c].end(),
+                                   [&](double h) { return line_angle_between(h, headings[c].front()) > radians(20); });
     if (turns) corners.push_back({map.corners[c].p_px.x(), map.corners[c].p_px.y()});
   }
   json["corners"] = corners;
@@ -63,7 +65,8 @@ void run_layout(const LayoutArguments& arguments, Outcome& outcome) {
   if (!picture) return outcome.no_answer(picture.error());
   const auto reading = read_layout(*picture, options);
   if (!reading) return outcome.no_answer(reading.error());
-  if (const auto written = write_file(arguments.output, document(*reading) + "\n"); !written) return outcome.no_answer(written.error());
+  if (const auto written = write_file(arguments.output, document(*reading) + "\n"); !written)
+    return outcome.no_answer(written.error());
   if (!arguments.preview.empty() && !cv::imwrite(arguments.preview, draw_layout(reading->rectified, reading->layout)))
     outcome.no_answer(fail(Errc::kIo, "cannot write " + arguments.preview));
 }
@@ -72,11 +75,16 @@ void run_layout(const LayoutArguments& arguments, Outcome& outcome) {
 
 void add_layout(CLI::App& app, Outcome& outcome) {
   auto arguments = std::make_shared<LayoutArguments>();
-  auto* command = app.add_subcommand("layout", "Read an evacuation plan: picture -> walls, corners, doors, rooms, signs");
+  auto* command =
+      app.add_subcommand("layout", "Read an evacuation plan: picture -> walls, corners, doors, rooms, signs");
   command->add_option("picture", arguments->picture, "PNG, JPEG, WebP or PDF")->required();
   command->add_option("-o,--output", arguments->output, "layout.json")->required();
   command->add_option("--preview", arguments->preview, "PNG with the reading over the picture");
-  command->add_option("--corners", arguments->corners, "sheet corners in the picture, clockwise from top left: x1,y1,...,x4,y4")->delimiter(',')->expected(8);
+  command
+      ->add_option("--corners", arguments->corners,
+                   "sheet corners in the picture, clockwise from top left: x1,y1,...,x4,y4")
+      ->delimiter(',')
+      ->expected(8);
   command->add_option("--metres-per-pixel", arguments->metres_per_pixel, "of the rectified picture, if it is known");
   command->add_option("--page", arguments->page, "page of a PDF, from 1")->check(CLI::Range(1, 10000));
   command->callback([arguments, &outcome] { run_layout(*arguments, outcome); });

@@ -82,11 +82,13 @@ Result<Segmentation> segment_file(const std::string& path) {
 nlohmann::json pairs_document(const std::vector<RegionPair>& pairs) {
   nlohmann::json list = nlohmann::json::array();
   for (const RegionPair& pair : pairs)
-    list.push_back({{"sketch", pair.label_a}, {"map", pair.label_b}, {"confidence", std::round(pair.confidence * 1000) / 1000}});
+    list.push_back(
+        {{"sketch", pair.label_a}, {"map", pair.label_b}, {"confidence", std::round(pair.confidence * 1000) / 1000}});
   return list;
 }
 
-nlohmann::json match_document(const Matching& matching, const PointTransfer& transfer, const std::vector<Point2>& points) {
+nlohmann::json match_document(const Matching& matching, const PointTransfer& transfer,
+                              const std::vector<Point2>& points) {
   nlohmann::json places = nlohmann::json::array(), sigmas = places, confidences = places, reasons = places;
   for (const Point2& point : points) {
     const Transferred place = transfer(point);
@@ -124,7 +126,8 @@ cv::Mat draw_matching(const Segmentation& a, const Segmentation& b, const Matchi
     const Point2 q = b.regions[static_cast<size_t>(pair.label_b - 1)].anchor_px;
     const cv::Scalar colour(60, 70 + 150 * pair.confidence, 230 - 170 * pair.confidence);
     if (pair.verdict != Verdict::kRejected)
-      cv::line(canvas, cv::Point2d(p.x(), p.y()), cv::Point2d(q.x() + a.labels.cols + 20, q.y()), colour, 2, cv::LINE_AA);
+      cv::line(canvas, cv::Point2d(p.x(), p.y()), cv::Point2d(q.x() + a.labels.cols + 20, q.y()), colour, 2,
+               cv::LINE_AA);
   }
   return canvas;
 }
@@ -165,7 +168,8 @@ Result<Ok> match_pictures(const MatchArguments& arguments) {
 void add_match(CLI::App& app, Outcome& outcome) {
   auto arguments = std::make_shared<MatchArguments>();
   auto* command = app.add_subcommand("match", "Find the same rooms on two maps and carry points from one to the other");
-  command->add_option("sketch", arguments->sketch, "picture of the first map; free space is brighter than gray 250")->required();
+  command->add_option("sketch", arguments->sketch, "picture of the first map; free space is brighter than gray 250")
+      ->required();
   command->add_option("map", arguments->map, "picture of the second map")->required();
   command->add_option("-o,--output", arguments->output, "match.json; label images are written beside it")->required();
   command->add_option("--pins", arguments->pins, "pins.json: what a person says is the same place");

@@ -94,7 +94,8 @@ Result<Ok> merge(Merging& work) {
   auto merged = acg.update(work.graph);
   if (!merged) return merged.error();
   if (merged->corners.empty())
-    return fail(Errc::kDegenerate, "the plan could not be laid on what the robot saw; give a start or two pairs with --anchors");
+    return fail(Errc::kDegenerate,
+                "the plan could not be laid on what the robot saw; give a start or two pairs with --anchors");
   work.merged = std::move(*merged);
   return Ok{};
 }
@@ -115,7 +116,8 @@ Result<Ok> write_answers(const MergeArguments& arguments, const Merging& work) {
     if (const auto written = write_tum(corrected, arguments.trajectory); !written) return written;
   }
   if (!arguments.map.empty())
-    if (const auto written = write_map(render_map(work.graph, node_poses(work.merged)), arguments.map); !written) return written;
+    if (const auto written = write_map(render_map(work.graph, node_poses(work.merged)), arguments.map); !written)
+      return written;
   if (!arguments.preview.empty() && !cv::imwrite(arguments.preview, draw_merged(work.merged, work.graph)))
     return fail(Errc::kIo, "cannot write " + arguments.preview);
   return Ok{};
@@ -136,11 +138,15 @@ void add_merge(CLI::App& app, Outcome& outcome) {
   CLI::App* command = app.add_subcommand("merge", "Correct an evacuation plan and a robot's map with each other");
   command->add_option("--layout", arguments->layout, "layout.json, as `smokemap layout` writes it")->required();
   command->add_option("--log", arguments->log, "the robot's log: CARMEN, rosbag2 or MCAP")->required();
-  command->add_option("--anchors", arguments->anchors, "where the robot started on the plan, or pairs of places (JSON)");
+  command->add_option("--anchors", arguments->anchors,
+                      "where the robot started on the plan, or pairs of places (JSON)");
   command->add_option("--points", arguments->points, "points on the plan to carry over (JSON)");
-  command->add_option("-o,--output", arguments->output, "merged.json: walls, corners, points, fit; frame map = first pose")->required();
+  command
+      ->add_option("-o,--output", arguments->output, "merged.json: walls, corners, points, fit; frame map = first pose")
+      ->required();
   command->add_option("--trajectory", arguments->trajectory, "corrected poses, one per scan (TUM)");
-  command->add_option("--map", arguments->map, "also write PREFIX.pgm, .yaml and .png of what was sensed")->type_name("PREFIX");
+  command->add_option("--map", arguments->map, "also write PREFIX.pgm, .yaml and .png of what was sensed")
+      ->type_name("PREFIX");
   command->add_option("--preview", arguments->preview, "PNG of the merged map");
   command->callback([arguments, &outcome] {
     if (const auto done = run_merge(*arguments); !done) outcome.no_answer(done.error());

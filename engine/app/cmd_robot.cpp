@@ -49,7 +49,8 @@ void play(const SensorLog& log, const RobotNodes& nodes, double rate) {
         [&](const auto& data) {
           if (data.stamp > last) {
             const double pause_s = std::min(to_seconds(data.stamp - last), kLongestPauseSeconds) / rate;
-            due += std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(pause_s));
+            due +=
+                std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(pause_s));
             last = data.stamp;
             std::this_thread::sleep_until(due);
           }
@@ -76,7 +77,9 @@ void add_robot(CLI::App& app, Outcome& outcome) {
   CLI::App* command = app.add_subcommand("robot", "play a sensor log as the ROS 2 robots that it came from");
   command->add_option("--bag", arguments->bag, "CARMEN, rosbag2 .db3 or MCAP")->required();
   command->add_option("--domain", arguments->domain, "ROS domain, 0..230")->capture_default_str();
-  command->add_option("--rate", arguments->rate, "times real time")->check(CLI::Range(0.01, 1000.0))->capture_default_str();
+  command->add_option("--rate", arguments->rate, "times real time")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->capture_default_str();
   command->callback([arguments, &outcome] { run_robot(*arguments, outcome); });
 }
 

@@ -34,10 +34,11 @@ nlohmann::json regions_document(const Segmentation& segmentation) {
                        {"outline", std::move(outline)}});
   }
   for (const RegionBorder& border : segmentation.borders)
-    borders.push_back({{"a", border.label_a},
-                       {"b", border.label_b},
-                       {"line", {border.line_px.a.x(), border.line_px.a.y(), border.line_px.b.x(), border.line_px.b.y()}},
-                       {"width", border.width_px}});
+    borders.push_back(
+        {{"a", border.label_a},
+         {"b", border.label_b},
+         {"line", {border.line_px.a.x(), border.line_px.a.y(), border.line_px.b.x(), border.line_px.b.y()}},
+         {"width", border.width_px}});
   return {{"size", {segmentation.labels.cols, segmentation.labels.rows}}, {"regions", regions}, {"borders", borders}};
 }
 

@@ -48,12 +48,14 @@ class PastEngine final : public server::EnginePort {
 Result<server::Json> command(server::Server& server, const std::string& name, server::Json data) {
   static int count = 0;
   const std::string id = "demo-" + std::to_string(SystemClock().now()) + "-" + std::to_string(++count);
-  return server.post("/api/commands", server::Json{{"type", "command"}, {"id", id}, {"name", name}, {"data", std::move(data)}}.dump());
+  return server.post("/api/commands",
+                     server::Json{{"type", "command"}, {"id", id}, {"name", name}, {"data", std::move(data)}}.dump());
 }
 
-/// What a commander does before deployment: uploads the plan, gives its scale, says where the robot stands. Once; after a
-/// restart the stored plan is taken, and only the robot's place is said again.
-Result<Ok> prepare_demo(server::Server& server, const Engine& engine, const DemoScenario& demo, const std::string& robot) {
+/// What a commander does before deployment: uploads the plan, gives its scale, says where the robot stands. Once; after
+/// a restart the stored plan is taken, and only the robot's place is said again.
+Result<Ok> prepare_demo(server::Server& server, const Engine& engine, const DemoScenario& demo,
+                        const std::string& robot) {
   if (!engine.snapshot()->layout) {
     std::vector<std::uint8_t> png;
     if (!cv::imencode(".png", demo.picture.sheet, png)) return fail(Errc::kIo, "the demo's plan could not be drawn");
@@ -63,12 +65,16 @@ Result<Ok> prepare_demo(server::Server& server, const Engine& engine, const Demo
     const auto layout = server.post("/api/plans/" + id + "/read",
                                     server::Json{{"metres_per_pixel", demo.picture.metres_per_pixel}}.dump());
     if (!layout) return layout.error();
-    if (const auto set = command(server, "set_layout", {{"plan_id", id}, {"layout", *layout}}); !set) return set.error();
+    if (const auto set = command(server, "set_layout", {{"plan_id", id}, {"layout", *layout}}); !set)
+      return set.error();
   }
   const Point2& px = demo.start.layout_px;
-  if (const auto set = command(server, "set_start", {{"robot", robot}, {"px", {px.x(), px.y()}}, {"heading", demo.start.heading_rad}}); !set)
+  if (const auto set = command(server, "set_start",
+                               {{"robot", robot}, {"px", {px.x(), px.y()}}, {"heading", demo.start.heading_rad}});
+      !set)
     return set.error();
-  if (const auto set = command(server, "set_exploring", {{"robot", robot}, {"exploring", true}}); !set) return set.error();
+  if (const auto set = command(server, "set_exploring", {{"robot", robot}, {"exploring", true}}); !set)
+    return set.error();
   return Ok{};
 }
 
@@ -98,7 +104,8 @@ Result<Ok> serve(const ServeArguments& arguments) {
   if (arguments.demo) {
     const auto demo = make_demo(arguments.seed);
     if (!demo) return demo.error();
-    if (const auto ready = prepare_demo(server, engine, *demo, demo_robot_params(*demo).name); !ready) return ready.error();
+    if (const auto ready = prepare_demo(server, engine, *demo, demo_robot_params(*demo).name); !ready)
+      return ready.error();
     auto started = SimulatedSite::start(*demo, arguments.ros_domain);
     if (!started) return started.error();
     site = std::move(*started);
@@ -113,14 +120,19 @@ Result<Ok> serve(const ServeArguments& arguments) {
 
 void add_serve(CLI::App& app, Outcome& outcome) {
   const auto arguments = std::make_shared<ServeArguments>();
-  CLI::App* sub = app.add_subcommand("serve", "the server: HTTP, live map, ROS 2 robots; with --demo a simulated building on fire");
+  CLI::App* sub =
+      app.add_subcommand("serve", "the server: HTTP, live map, ROS 2 robots; with --demo a simulated building on fire");
   sub->add_option("--data", arguments->data, "folder for the log and the pictures")->capture_default_str();
   sub->add_option("--web", arguments->web, "folder with the built web app; empty = none")->capture_default_str();
-  sub->add_option("--address", arguments->address, "to listen on; 0.0.0.0 = every network (use a trusted one)")->capture_default_str();
+  sub->add_option("--address", arguments->address, "to listen on; 0.0.0.0 = every network (use a trusted one)")
+      ->capture_default_str();
   sub->add_option("--port", arguments->port, "0 = any free one")->check(CLI::Range(0, 65535))->capture_default_str();
   sub->add_option("--host-name", arguments->host_names, "further names under which browsers may reach it");
-  sub->add_option("--ros-domain", arguments->ros_domain, "ROS_DOMAIN_ID of the robots")->check(CLI::Range(0, 230))->capture_default_str();
-  sub->add_flag("--demo", arguments->demo, "simulated building, plan and robot; browsers on this machine pair by themselves");
+  sub->add_option("--ros-domain", arguments->ros_domain, "ROS_DOMAIN_ID of the robots")
+      ->check(CLI::Range(0, 230))
+      ->capture_default_str();
+  sub->add_flag("--demo", arguments->demo,
+                "simulated building, plan and robot; browsers on this machine pair by themselves");
   sub->add_option("--seed", arguments->seed, "of the demo's building")->capture_default_str();
   sub->callback([arguments, &outcome] {
     if (const auto done = serve(*arguments); !done) outcome.no_answer(done.error());

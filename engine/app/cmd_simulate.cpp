@@ -33,21 +33,36 @@ Result<DemoParams> read_scenario(const std::string& path) {
   if (!document.is_object()) return fail(Errc::kCorrupt, path + ": the scenario is no JSON object");
   try {
     for (const auto& [key, value] : document.items()) {
-      if (key == "length_m") params.building.length_m = value;
-      else if (key == "depth_m") params.building.depth_m = value;
-      else if (key == "corridor_m") params.building.corridor_m = value;
-      else if (key == "furniture") params.building.furniture = value;
-      else if (key == "leaf_share") params.building.leaf_share = value;
-      else if (key == "stretch") params.distortion.sigma_stretch = value;
-      else if (key == "sigma_corner_m") params.distortion.sigma_corner_m = value;
-      else if (key == "missing_walls") params.distortion.missing_walls = value;
-      else if (key == "phantom_walls") params.distortion.phantom_walls = value;
-      else if (key == "turn_deg") params.distortion.turn_rad = radians(value);
-      else if (key == "fire") params.fire = value;
-      else if (key == "burning_s") params.burning_s = value;
-      else if (key == "sigma_start_m") params.sigma_start_m = value;
-      else if (key == "sigma_start_deg") params.sigma_start_rad = radians(value);
-      else return fail(Errc::kInvalidArgument, path + ": unknown field \"" + key + "\"");
+      if (key == "length_m")
+        params.building.length_m = value;
+      else if (key == "depth_m")
+        params.building.depth_m = value;
+      else if (key == "corridor_m")
+        params.building.corridor_m = value;
+      else if (key == "furniture")
+        params.building.furniture = value;
+      else if (key == "leaf_share")
+        params.building.leaf_share = value;
+      else if (key == "stretch")
+        params.distortion.sigma_stretch = value;
+      else if (key == "sigma_corner_m")
+        params.distortion.sigma_corner_m = value;
+      else if (key == "missing_walls")
+        params.distortion.missing_walls = value;
+      else if (key == "phantom_walls")
+        params.distortion.phantom_walls = value;
+      else if (key == "turn_deg")
+        params.distortion.turn_rad = radians(value);
+      else if (key == "fire")
+        params.fire = value;
+      else if (key == "burning_s")
+        params.burning_s = value;
+      else if (key == "sigma_start_m")
+        params.sigma_start_m = value;
+      else if (key == "sigma_start_deg")
+        params.sigma_start_rad = radians(value);
+      else
+        return fail(Errc::kInvalidArgument, path + ": unknown field \"" + key + "\"");
     }
   } catch (const nlohmann::json::exception& e) {
     return fail(Errc::kCorrupt, path + ": " + e.what());
@@ -71,14 +86,19 @@ Result<Ok> write_run(const std::string& path, RecordedRun& run) {
   return write_log(log, path);
 }
 
-Result<Ok> write_all(const SimulateArguments& arguments, const DemoParams& params, const DemoScenario& demo, RecordedRun& run) {
+Result<Ok> write_all(const SimulateArguments& arguments, const DemoParams& params, const DemoScenario& demo,
+                     RecordedRun& run) {
   const auto text = [](const std::string& path, const auto& make) -> Result<Ok> {
     return path.empty() ? Result<Ok>(Ok{}) : write_file(path, make());
   };
   if (const auto done = text(arguments.truth, [&] { return truth_json(demo, run); }); !done) return done;
   if (const auto done = text(arguments.anchors, [&] { return anchors_json(demo, params); }); !done) return done;
   if (const auto done = text(arguments.points, [&] { return points_json(demo, run); }); !done) return done;
-  if (const auto done = text(arguments.layout, [&] { return to_json(LayoutDocument{demo.truth.layout, {}, {}}); }); !done)
+  if (const auto done = text(arguments.layout,
+                             [&] {
+                               return to_json(LayoutDocument{demo.truth.layout, {}, {}});
+                             });
+      !done)
     return done;
   if (!arguments.plan.empty())
     if (const auto done = write_picture(arguments.plan, demo.picture.sheet); !done) return done;
@@ -105,7 +125,8 @@ void run_simulate(const SimulateArguments& arguments, Outcome& outcome) {
   auto run = record_run(*demo, how);
   if (!run) return outcome.no_answer(run.error());
   const std::size_t scans = run->truth.size();
-  if (const auto written = write_all(arguments, *params, *demo, *run); !written) return outcome.no_answer(written.error());
+  if (const auto written = write_all(arguments, *params, *demo, *run); !written)
+    return outcome.no_answer(written.error());
   std::cout << demo->building.rooms.size() << " rooms, " << run->duration_s << " s, " << run->way_m << " m, " << scans
             << " scans, " << run->bumps << " bumps\n";
 }
@@ -116,10 +137,13 @@ void add_simulate(CLI::App& app, Outcome& outcome) {
   auto arguments = std::make_shared<SimulateArguments>();
   CLI::App* command = app.add_subcommand(
       "simulate", "a two-wing building on fire, a wrong plan of it, and the log of a robot that visits every room");
-  command->add_option("scenario", arguments->scenario, "JSON with variations: length_m, depth_m, corridor_m, furniture, leaf_share, "
-                      "stretch, sigma_corner_m, missing_walls, phantom_walls, turn_deg, fire, burning_s, sigma_start_m, sigma_start_deg");
+  command->add_option("scenario", arguments->scenario,
+                      "JSON with variations: length_m, depth_m, corridor_m, furniture, leaf_share, "
+                      "stretch, sigma_corner_m, missing_walls, phantom_walls, turn_deg, fire, burning_s, "
+                      "sigma_start_m, sigma_start_deg");
   command->add_option("--seed", arguments->seed, "the same seed gives the same files")->capture_default_str();
-  command->add_option("-o,--output", arguments->output, "run.mcap (scans, odometry, radar) or a CARMEN log (.log)")->required();
+  command->add_option("-o,--output", arguments->output, "run.mcap (scans, odometry, radar) or a CARMEN log (.log)")
+      ->required();
   command->add_option("--truth", arguments->truth, "JSON: poses, walls, corners, points as they truly are");
   command->add_option("--plan", arguments->plan, "the evacuation plan as a picture");
   command->add_option("--photo", arguments->photo, "the plan as photographed");

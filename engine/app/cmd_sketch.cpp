@@ -60,13 +60,19 @@ cv::Mat draw_sketch(const SketchMap& sketch, const CleanSketch& clean) {
   cv::Mat picture(clean.free_space.size(), CV_8UC3, cv::Scalar(255, 255, 255));
   picture.setTo(cv::Scalar(225, 240, 215), clean.free_space);
   const int pen = std::max(2, std::max(picture.rows, picture.cols) / 400);
-  const auto pixel = [](const Point2& p) { return cv::Point(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))); };
+  const auto pixel = [](const Point2& p) {
+    return cv::Point(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+  };
   for (const auto& s : sketch.strokes) {
-    const cv::Scalar colour = s.kind == StrokeKind::kWall ? cv::Scalar(0, 0, 0) : s.kind == StrokeKind::kDoor ? cv::Scalar(200, 120, 0) : cv::Scalar(190, 190, 190);
-    for (std::size_t i = 0; i + 1 < s.points_px.size(); ++i) cv::line(picture, pixel(s.points_px[i]), pixel(s.points_px[i + 1]), colour, pen, cv::LINE_AA);
+    const cv::Scalar colour = s.kind == StrokeKind::kWall   ? cv::Scalar(0, 0, 0)
+                              : s.kind == StrokeKind::kDoor ? cv::Scalar(200, 120, 0)
+                                                            : cv::Scalar(190, 190, 190);
+    for (std::size_t i = 0; i + 1 < s.points_px.size(); ++i)
+      cv::line(picture, pixel(s.points_px[i]), pixel(s.points_px[i + 1]), colour, pen, cv::LINE_AA);
   }
   for (const auto& g : clean.gaps)
-    cv::line(picture, pixel(g.gap_px.a), pixel(g.gap_px.b), g.closed_by_us ? cv::Scalar(255, 60, 0) : cv::Scalar(0, 140, 255), 2 * pen, cv::LINE_AA);
+    cv::line(picture, pixel(g.gap_px.a), pixel(g.gap_px.b),
+             g.closed_by_us ? cv::Scalar(255, 60, 0) : cv::Scalar(0, 140, 255), 2 * pen, cv::LINE_AA);
   return picture;
 }
 
@@ -85,7 +91,8 @@ void run_sketch(const SketchArguments& arguments, Outcome& outcome) {
   if (!clean) return outcome.no_answer(clean.error());
   for (const auto& w : warnings) std::cerr << w << '\n';
   for (const auto& w : clean->warnings) std::cerr << w << '\n';
-  if (!cv::imwrite(arguments.output, clean->free_space)) return outcome.no_answer(fail(Errc::kIo, "cannot write " + arguments.output));
+  if (!cv::imwrite(arguments.output, clean->free_space))
+    return outcome.no_answer(fail(Errc::kIo, "cannot write " + arguments.output));
   if (!arguments.preview.empty()) cv::imwrite(arguments.preview, draw_sketch(*sketch, *clean));
 }
 
@@ -93,7 +100,8 @@ void run_sketch(const SketchArguments& arguments, Outcome& outcome) {
 
 void add_sketch(CLI::App& app, Outcome& outcome) {
   auto arguments = std::make_shared<SketchArguments>();
-  auto* command = app.add_subcommand("sketch", "Clean a sketch: strokes, or a photograph of a drawing -> free space with closed rooms");
+  auto* command = app.add_subcommand(
+      "sketch", "Clean a sketch: strokes, or a photograph of a drawing -> free space with closed rooms");
   command->add_option("input", arguments->input, "strokes as JSON, or a picture")->required();
   command->add_option("-o,--output", arguments->output, "PNG: 255 free, 0 elsewhere")->required();
   command->add_option("--preview", arguments->preview, "PNG with strokes and gaps");

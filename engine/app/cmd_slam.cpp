@@ -39,7 +39,10 @@ nlohmann::json stats_of(const Slam& slam, const SensorLog& log) {
           {"edges", slam.graph().edges.size()},
           {"loops", {{"tried", c.loops_tried}, {"closed", c.loops_closed}, {"rejected", c.loops_rejected}}},
           {"dropped",
-           {{"malformed", c.malformed}, {"duplicates", c.duplicates}, {"too_few_points", c.too_few_points}, {"poor_matches", c.poor_matches}}},
+           {{"malformed", c.malformed},
+            {"duplicates", c.duplicates},
+            {"too_few_points", c.too_few_points},
+            {"poor_matches", c.poor_matches}}},
           {"dropped_by_reader", log.dropped},
           {"stamps_back", c.stamps_back},
           {"odometry_jumps", c.jumps},
@@ -71,7 +74,8 @@ Result<Ok> run_slam(const SlamOptions& options) {
   }
   slam.polish();
   const Trajectory trajectory = slam.trajectory();
-  if (slam.graph().nodes.empty()) return fail(Errc::kDegenerate, options.log + ": no scan with enough points to make a map of");
+  if (slam.graph().nodes.empty())
+    return fail(Errc::kDegenerate, options.log + ": no scan with enough points to make a map of");
   if (const auto written = write_tum(trajectory, options.trajectory); !written) return written;
   if (!options.map.empty()) {
     RenderParams render;
@@ -90,11 +94,14 @@ void add_slam(CLI::App& app, Outcome& outcome) {
   command->add_option("log", options->log, "CARMEN log (plain or .gz), rosbag2 .db3 or MCAP")->required();
   command->add_option("-o,--output", options->trajectory, "trajectory to write (TUM: t x y z qx qy qz qw)")->required();
   command->add_option("--map", options->map, "also write PREFIX.pgm, .yaml and .png")->type_name("PREFIX");
-  command->add_option("--resolution", options->resolution_m, "metres per cell of the map")->check(CLI::Range(0.01, 1.0))->capture_default_str();
+  command->add_option("--resolution", options->resolution_m, "metres per cell of the map")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
   command->add_option("--sensor", options->sensor, "lidar or radar alone; auto uses both")
       ->check(CLI::IsMember({"auto", "lidar", "radar"}))
       ->capture_default_str();
-  command->add_flag("--clear-air", options->clear_air, "beams without return are free up to the sensor's reach (never true in smoke)");
+  command->add_flag("--clear-air", options->clear_air,
+                    "beams without return are free up to the sensor's reach (never true in smoke)");
   command->add_option("--stats", options->stats, "write what was used, dropped and closed as JSON");
   command->callback([options, &outcome] {
     if (const auto done = run_slam(*options); !done) outcome.no_answer(done.error());

@@ -6,8 +6,8 @@
 
 namespace smokemap::app {
 
-/// The reading over its picture: walls red (doubtful ones orange), corners black, doors blue, windows light blue, passages
-/// green, signs circled, rooms tinted.
+/// The reading over its picture: walls red (doubtful ones orange), corners black, doors blue, windows light blue,
+/// passages green, signs circled, rooms tinted.
 cv::Mat draw_layout(const cv::Mat& rectified_bgr, const LayoutMap& layout);
 
 }  // namespace smokemap::app

@@ -11,7 +11,8 @@ Result<cv::Mat> read_map_picture(const std::string& path) {
   try {
     cv::Mat picture = cv::imread(path, cv::IMREAD_GRAYSCALE);
     if (picture.empty()) return fail(Errc::kCorrupt, path + " is not a picture we can read");
-    if (picture.total() > size_t{64} << 20) return fail(Errc::kTooLarge, path + " has more than 64 megapixels: reduce it first");
+    if (picture.total() > size_t{64} << 20)
+      return fail(Errc::kTooLarge, path + " has more than 64 megapixels: reduce it first");
     return picture;
   } catch (const cv::Exception& e) {
     return fail(Errc::kCorrupt, path + " cannot be decoded: " + e.err);

@@ -11,7 +11,8 @@ using nlohmann::json;
 /// The document, or why it is none.
 Result<json> parse_object(const std::string& text, const char* what) {
   json document = json::parse(text, nullptr, false);
-  if (document.is_discarded() || !document.is_object()) return fail(Errc::kCorrupt, std::string(what) + ": not a JSON object");
+  if (document.is_discarded() || !document.is_object())
+    return fail(Errc::kCorrupt, std::string(what) + ": not a JSON object");
   return document;
 }
 
@@ -55,7 +56,8 @@ Result<Anchors> anchors_from_json(const std::string& text, const LayoutMap& layo
       return fail(Errc::kCorrupt, "anchors: start needs layout_px [x, y] and heading_rad");
     if (start->contains("sigma_m") && (!read_number(*start, "sigma_m", plan_start.sigma_m) || plan_start.sigma_m < 0))
       return fail(Errc::kCorrupt, "anchors: start.sigma_m is not a length");
-    if (start->contains("sigma_rad") && (!read_number(*start, "sigma_rad", plan_start.sigma_rad) || plan_start.sigma_rad < 0))
+    if (start->contains("sigma_rad") &&
+        (!read_number(*start, "sigma_rad", plan_start.sigma_rad) || plan_start.sigma_rad < 0))
       return fail(Errc::kCorrupt, "anchors: start.sigma_rad is not an angle");
     plan_start.T_layout_robot = Pose2(layout.frame().to_metres(p_px), heading);
     out.start = plan_start;
@@ -65,7 +67,8 @@ Result<Anchors> anchors_from_json(const std::string& text, const LayoutMap& layo
     for (const json& entry : *pairs) {
       Anchors::Pair pair;
       if (!read_place(entry, "layout_px", pair.p_layout_px) || !read_place(entry, "map", pair.p_map))
-        return fail(Errc::kCorrupt, "anchors: pair " + std::to_string(out.pairs.size()) + " needs layout_px [x, y] and map [x, y]");
+        return fail(Errc::kCorrupt,
+                    "anchors: pair " + std::to_string(out.pairs.size()) + " needs layout_px [x, y] and map [x, y]");
       out.pairs.push_back(pair);
     }
   }
@@ -80,7 +83,8 @@ Result<std::vector<Point2>> points_from_json(const std::string& text) {
   std::vector<Point2> out;
   for (const json& entry : *list) {
     Point2 p;
-    if (!read_place(entry, p)) return fail(Errc::kCorrupt, "points: entry " + std::to_string(out.size()) + " is not [x, y]");
+    if (!read_place(entry, p))
+      return fail(Errc::kCorrupt, "points: entry " + std::to_string(out.size()) + " is not [x, y]");
     out.push_back(p);
   }
   return out;
@@ -96,7 +100,10 @@ std::string merged_to_json(const MergedMap& merged, const LayoutMap& layout, con
                             {"confidence", rounded(w.confidence)},
                             {"moved_m", rounded(w.displacement_m)}});
   for (const MergedCorner& c : merged.corners)
-    out["corners"].push_back({{"layout_px", to_json(c.p_layout_px)}, {"map", to_json(c.p_map)}, {"sigma_m", rounded(c.sigma_m)}, {"seen", c.seen}});
+    out["corners"].push_back({{"layout_px", to_json(c.p_layout_px)},
+                              {"map", to_json(c.p_map)},
+                              {"sigma_m", rounded(c.sigma_m)},
+                              {"seen", c.seen}});
   for (const Point2& p_px : points_px) {
     const Point2 p_layout = layout.frame().to_metres(p_px);
     const bool known = !merged.corners.empty() && on_sheet(p_px, layout);

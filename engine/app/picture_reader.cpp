@@ -25,7 +25,8 @@ Result<server::CleanPicture> encoded(const cv::Mat& bgr, bool photograph) {
   } catch (const cv::Exception&) {
     return fail(Errc::kIo, "the picture could not be written");
   }
-  return server::CleanPicture{{bytes.begin(), bytes.end()}, photograph ? "image/jpeg" : "image/png", bgr.cols, bgr.rows, {}};
+  return server::CleanPicture{
+      {bytes.begin(), bytes.end()}, photograph ? "image/jpeg" : "image/png", bgr.cols, bgr.rows, {}};
 }
 
 Result<bool> is_photograph(std::string_view bytes) {
@@ -53,7 +54,8 @@ Result<server::PlanReading> PictureReader::read_layout(std::string_view bytes, c
   if (!reading) return reading.error();
   auto rectified = encoded(reading->rectified, *photograph);
   if (!rectified) return rectified.error();
-  return server::PlanReading{std::move(reading->layout), {reading->homography, reading->sheet_corners_px}, std::move(*rectified)};
+  return server::PlanReading{
+      std::move(reading->layout), {reading->homography, reading->sheet_corners_px}, std::move(*rectified)};
 }
 
 Result<server::SketchReading> PictureReader::read_sketch_photo(std::string_view bytes) {

@@ -21,7 +21,8 @@ class CornerJudge {
 
   std::string kind(int corner) const {
     bool real = false;
-    for (std::size_t i = 0; i < walls().size(); ++i) real = real || (touches(i, corner) && demo_.truth.wall_source[i] >= 0);
+    for (std::size_t i = 0; i < walls().size(); ++i)
+      real = real || (touches(i, corner) && demo_.truth.wall_source[i] >= 0);
     if (!real) return "phantom";
     if (static_cast<std::size_t>(corner) >= demo_.plan.drawn.corners.size()) return "jamb";
     return demo_.truth.layout.corners[static_cast<std::size_t>(corner)].degree == 1 ? "end" : "junction";
@@ -48,7 +49,9 @@ class CornerJudge {
 
  private:
   const std::vector<LayoutWall>& walls() const { return demo_.truth.layout.walls; }
-  bool touches(std::size_t wall, int corner) const { return walls()[wall].corner_a == corner || walls()[wall].corner_b == corner; }
+  bool touches(std::size_t wall, int corner) const {
+    return walls()[wall].corner_a == corner || walls()[wall].corner_b == corner;
+  }
 
   const DemoScenario& demo_;
   const RecordedRun& run_;
@@ -102,7 +105,9 @@ json point_truth(const DemoScenario& demo, const RecordedRun& run) {
   return points;
 }
 
-json start_json(const StartHint& start) { return {{"layout_px", point(start.layout_px)}, {"heading_rad", rounded(start.heading_rad)}}; }
+json start_json(const StartHint& start) {
+  return {{"layout_px", point(start.layout_px)}, {"heading_rad", rounded(start.heading_rad)}};
+}
 
 void append_ranges(const LaserScan& scan, std::string& text) {
   char number[32];
@@ -116,7 +121,8 @@ void append_ranges(const LaserScan& scan, std::string& text) {
 }  // namespace
 
 std::string truth_json(const DemoScenario& demo, const RecordedRun& run) {
-  json poses = json::array(), corners = json::array(), building = json::array(), doors = json::array(), closed = json::array();
+  json poses = json::array(), corners = json::array(), building = json::array(), doors = json::array(),
+       closed = json::array();
   for (const StampedPose& pose : run.truth)
     poses.push_back({to_seconds(pose.stamp), rounded(pose.T_map_robot.x()), rounded(pose.T_map_robot.y()),
                      rounded(pose.T_map_robot.heading())});
@@ -130,7 +136,8 @@ std::string truth_json(const DemoScenario& demo, const RecordedRun& run) {
   }
   for (std::size_t i = 0; i < demo.building.walls.size(); ++i)
     for (const Segment2& piece : demo.building.wall_pieces(static_cast<int>(i)))
-      building.push_back({point(demo.to_map(piece.a)), point(demo.to_map(piece.b)), demo.building.walls[i].thickness_m});
+      building.push_back(
+          {point(demo.to_map(piece.a)), point(demo.to_map(piece.b)), demo.building.walls[i].thickness_m});
   for (std::size_t i = 0; i < demo.building.doors.size(); ++i) {
     const Segment2 gap = demo.building.door_gap(static_cast<int>(i));
     const json line{point(demo.to_map(gap.a)), point(demo.to_map(gap.b))};
@@ -149,9 +156,10 @@ std::string truth_json(const DemoScenario& demo, const RecordedRun& run) {
                       {"points", point_truth(demo, run)},
                       {"start", start_json(demo.true_start)},
                       {"fire", point(demo.to_map(demo.p_world_fire))},
-                      {"goal", {{"room", demo.far_room},
-                                {"layout_px", point(demo.far_room_px)},
-                                {"map", point(demo.to_map(demo.p_world_far_room))}}},
+                      {"goal",
+                       {{"room", demo.far_room},
+                        {"layout_px", point(demo.far_room_px)},
+                        {"map", point(demo.to_map(demo.p_world_far_room))}}},
                       {"run", {{"seconds", run.duration_s}, {"way_m", rounded(run.way_m)}, {"bumps", run.bumps}}}};
   return document.dump() + "\n";
 }
@@ -177,19 +185,22 @@ std::string carmen_log(const RecordedRun& run) {
     if (const auto* scan = std::get_if<LaserScan>(&item)) {
       if (scan_index == 0) {
         std::snprintf(line, sizeof line, "PARAM robot_front_laser_max %.2f\nPARAM laser_front_laser_fov %.0f\n",
-                      scan->range_max_m, degrees(scan->angle_increment_rad * static_cast<double>(scan->ranges_m.size())));
+                      scan->range_max_m,
+                      degrees(scan->angle_increment_rad * static_cast<double>(scan->ranges_m.size())));
         text += line;
       }
       const Pose2& pose = run.T_odom_scan[scan_index++];
-      std::snprintf(line, sizeof line, " %.5f %.5f %.6f %.5f %.5f %.6f %.6f host %.6f\n", pose.x(), pose.y(), pose.heading(),
-                    pose.x(), pose.y(), pose.heading(), to_seconds(scan->stamp), to_seconds(scan->stamp));
+      std::snprintf(line, sizeof line, " %.5f %.5f %.6f %.5f %.5f %.6f %.6f host %.6f\n", pose.x(), pose.y(),
+                    pose.heading(), pose.x(), pose.y(), pose.heading(), to_seconds(scan->stamp),
+                    to_seconds(scan->stamp));
       text += "FLASER " + std::to_string(scan->ranges_m.size());
       append_ranges(*scan, text);
       text += line;
     } else if (const auto* odometry = std::get_if<Odometry>(&item)) {
       const Pose2& pose = odometry->T_odom_robot;
-      std::snprintf(line, sizeof line, "ODOM %.5f %.5f %.6f %.4f %.4f 0 %.6f host %.6f\n", pose.x(), pose.y(), pose.heading(),
-                    odometry->speed_mps, odometry->turn_rate_radps, to_seconds(odometry->stamp), to_seconds(odometry->stamp));
+      std::snprintf(line, sizeof line, "ODOM %.5f %.5f %.6f %.4f %.4f 0 %.6f host %.6f\n", pose.x(), pose.y(),
+                    pose.heading(), odometry->speed_mps, odometry->turn_rate_radps, to_seconds(odometry->stamp),
+                    to_seconds(odometry->stamp));
       text += line;
     }
   }

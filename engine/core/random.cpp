@@ -19,9 +19,7 @@ std::uint64_t mix(std::uint64_t x) {  // splitmix64
 
 double uniform01(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1.0p-53; }
 
-double uniform(std::mt19937_64& random, double low, double high) {
-  return low + (high - low) * uniform01(random);
-}
+double uniform(std::mt19937_64& random, double low, double high) { return low + (high - low) * uniform01(random); }
 
 std::uint64_t uniform_index(std::mt19937_64& random, std::uint64_t count) {
   ENGINE_EXPECT(count > 0);

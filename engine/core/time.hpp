@@ -8,9 +8,7 @@ namespace smokemap {
 using Stamp = std::int64_t;
 
 constexpr double to_seconds(Stamp nanoseconds) { return static_cast<double>(nanoseconds) * 1e-9; }
-constexpr Stamp from_seconds(double seconds) {
-  return static_cast<Stamp>(seconds * 1e9 + (seconds < 0 ? -0.5 : 0.5));
-}
+constexpr Stamp from_seconds(double seconds) { return static_cast<Stamp>(seconds * 1e9 + (seconds < 0 ? -0.5 : 0.5)); }
 
 /// The wall clock as an interface, so that tests own the time.
 class Clock {

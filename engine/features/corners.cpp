@@ -24,7 +24,7 @@ std::vector<Arm> arms_at(const WallLine& wall, const Point2& corner, double larg
   const double reach = std::max({0.0, -at, at - length});
   if (reach > largest_reach_m) return {};
   std::vector<Arm> arms;
-  const bool near_a = at < largest_reach_m, near_b = at > length - largest_reach_m;
+  const bool near_a = at<largest_reach_m, near_b = at> length - largest_reach_m;
   // An arm must be longer than what may be missing of it.
   if (!near_b || (near_a && at < length - at)) arms.push_back({s.heading(), true, reach});
   if (!near_a || (near_b && at > length - at)) arms.push_back({wrap_angle(s.heading() + kPi), false, reach});
@@ -54,15 +54,19 @@ Eigen::Matrix2d crossing_covariance(const WallLine& a, const WallLine& b, const 
   return back * Eigen::Vector2d(variance(a), variance(b)).asDiagonal() * back.transpose();
 }
 
-double confidence_of(const WallLine& a, const WallLine& b, const Arm& arm_a, const Arm& arm_b, const CornerParams& params) {
+double confidence_of(const WallLine& a, const WallLine& b, const Arm& arm_a, const Arm& arm_b,
+                     const CornerParams& params) {
   const double seen = std::exp(-(arm_a.reach_m + arm_b.reach_m) / params.largest_reach_m);
-  const auto solid = [&](const WallLine& wall) { return std::min(1.0, wall.segment.length() / (2.5 * params.min_wall_m)); };
+  const auto solid = [&](const WallLine& wall) {
+    return std::min(1.0, wall.segment.length() / (2.5 * params.min_wall_m));
+  };
   return seen * solid(a) * solid(b);
 }
 
 bool same_corner(const Corner& a, const Corner& b, double merge_m) {
   constexpr double kSameAngle_rad = 0.5;
-  return (a.position - b.position).norm() < merge_m && std::abs(wrap_angle(a.orientation_rad - b.orientation_rad)) < kSameAngle_rad &&
+  return (a.position - b.position).norm() < merge_m &&
+         std::abs(wrap_angle(a.orientation_rad - b.orientation_rad)) < kSameAngle_rad &&
          std::abs(a.opening_rad - b.opening_rad) < kSameAngle_rad;
 }
 
@@ -91,7 +95,8 @@ std::vector<Corner> find_corners(const std::vector<WallLine>& walls, const Corne
     if (walls[i].segment.length() < params.min_wall_m) continue;
     for (std::size_t j = i + 1; j < walls.size(); ++j) {
       const Segment2 &a = walls[i].segment, &b = walls[j].segment;
-      if (b.length() < params.min_wall_m || line_angle_between(a.heading(), b.heading()) < params.min_angle_rad) continue;
+      if (b.length() < params.min_wall_m || line_angle_between(a.heading(), b.heading()) < params.min_angle_rad)
+        continue;
       const auto crossing = line_intersection(a, b);
       if (!crossing) continue;
       for (const Arm& arm_a : arms_at(walls[i], *crossing, params.largest_reach_m))

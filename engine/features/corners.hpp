@@ -13,23 +13,23 @@ struct Corner {
   double orientation_rad = 0;  ///< bisector of the free sector, from the corner into free space
   double opening_rad = 0;      ///< angle of the free sector: about pi/2 inside a room, 3 pi/2 around a pillar's edge
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of the position, m^2
-  double confidence = 0;       ///< 0 .. 1: how much of both walls was seen up to the corner
-  int wall_a = 0;              ///< indices into the walls it was made of
+  double confidence = 0;                                 ///< 0 .. 1: how much of both walls was seen up to the corner
+  int wall_a = 0;                                        ///< indices into the walls it was made of
   int wall_b = 0;
 };
 
 struct CornerParams {
-  double min_angle_rad = 0.60;      ///< between the walls' lines; flatter crossings have no certain place
-  double largest_reach_m = 0.50;    ///< a wall may end this far from the corner
-  double min_wall_m = 0.40;         ///< shorter walls make no corner
-  double merge_m = 0.25;            ///< corners closer than this with the same opening are one
+  double min_angle_rad = 0.60;    ///< between the walls' lines; flatter crossings have no certain place
+  double largest_reach_m = 0.50;  ///< a wall may end this far from the corner
+  double min_wall_m = 0.40;       ///< shorter walls make no corner
+  double merge_m = 0.25;          ///< corners closer than this with the same opening are one
   Result<Ok> validate() const;
 };
 
-/// Corners of walls whose ends come near the crossing of their lines. A T junction gives two corners. The free sector is
-/// the one that lies on the free side (left) of both walls. Ordered by wall indices.
-/// Source: Paper V, algorithm 1 (corners between NDT cells); differs: from fitted wall lines, so that the covariance comes
-/// from the fit and the corner is not bound to a cell.
+/// Corners of walls whose ends come near the crossing of their lines. A T junction gives two corners. The free sector
+/// is the one that lies on the free side (left) of both walls. Ordered by wall indices. Source: Paper V, algorithm 1
+/// (corners between NDT cells); differs: from fitted wall lines, so that the covariance comes from the fit and the
+/// corner is not bound to a cell.
 std::vector<Corner> find_corners(const std::vector<WallLine>& walls, const CornerParams& params = {});
 
 }  // namespace smokemap

@@ -35,7 +35,8 @@ FittedLine fit_line(const std::vector<DirectedHit>& hits, const std::vector<std:
     const Point2 d = hits[i].p - line.mean;
     scatter += d * d.transpose() / static_cast<double>(members.size());
   }
-  const double half_gap = std::hypot(0.5 * (scatter(0, 0) - scatter(1, 1)), scatter(0, 1)), middle = 0.5 * scatter.trace();
+  const double half_gap = std::hypot(0.5 * (scatter(0, 0) - scatter(1, 1)), scatter(0, 1)),
+               middle = 0.5 * scatter.trace();
   const double along = 0.5 * std::atan2(2 * scatter(0, 1), scatter(0, 0) - scatter(1, 1));
   line.normal = {-std::sin(along), std::cos(along)};
   line.rms_across_m = std::sqrt(std::max(0.0, middle - half_gap));
@@ -47,7 +48,8 @@ FittedLine fit_line(const std::vector<DirectedHit>& hits, const std::vector<std:
 class HitCells {
  public:
   HitCells(const std::vector<PosedHit>& hits, double cell_m) : cell_m_(cell_m) {
-    for (std::size_t i = 0; i < hits.size(); ++i) cells_[key(index(hits[i].point.x()), index(hits[i].point.y()))].push_back(i);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      cells_[key(index(hits[i].point.x()), index(hits[i].point.y()))].push_back(i);
   }
   std::vector<std::size_t> near(const std::vector<PosedHit>& hits, const Point2& p) const {
     std::vector<std::size_t> found;
@@ -64,7 +66,8 @@ class HitCells {
  private:
   int index(double v) const { return static_cast<int>(std::floor(v / cell_m_)); }
   static std::int64_t key(int x, int y) {
-    return static_cast<std::int64_t>((static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) | static_cast<std::uint32_t>(y));
+    return static_cast<std::int64_t>((static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) |
+                                     static_cast<std::uint32_t>(y));
   }
   double cell_m_;
   std::unordered_map<std::int64_t, std::vector<std::size_t>> cells_;
@@ -85,13 +88,14 @@ std::vector<DirectedHit> with_directions(const std::vector<PosedHit>& hits, cons
   }
   const double least_cosine = std::cos(params.tolerance_rad);
   for (std::size_t i = 0; i < hits.size(); ++i)
-    for (const std::size_t j : near[i]) directed[i].aligned += directed[i].normal.dot(directed[j].normal) > least_cosine;
+    for (const std::size_t j : near[i])
+      directed[i].aligned += directed[i].normal.dot(directed[j].normal) > least_cosine;
   return directed;
 }
 
 /// Unused hits on the line, in order along it, from the seed as far as no gap is too long.
-std::vector<std::size_t> members_of(const std::vector<DirectedHit>& hits, const FittedLine& line, const Point2& seed, double least_cosine,
-                                    const WallLineParams& params) {
+std::vector<std::size_t> members_of(const std::vector<DirectedHit>& hits, const FittedLine& line, const Point2& seed,
+                                    double least_cosine, const WallLineParams& params) {
   const Point2 along(line.normal.y(), -line.normal.x());
   std::vector<std::pair<double, std::size_t>> on_line;
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -115,7 +119,8 @@ std::vector<std::size_t> members_of(const std::vector<DirectedHit>& hits, const 
   return members;
 }
 
-WallLine wall_of(const std::vector<DirectedHit>& hits, const FittedLine& line, const std::vector<std::size_t>& members, const WallLineParams& params) {
+WallLine wall_of(const std::vector<DirectedHit>& hits, const FittedLine& line, const std::vector<std::size_t>& members,
+                 const WallLineParams& params) {
   const Point2 along(line.normal.y(), -line.normal.x());  // free space, where the normal points, is on its left
   double from = 0, to = 0;
   for (const std::size_t i : members) {
@@ -153,7 +158,8 @@ std::vector<WallLine> find_wall_lines(const std::vector<PosedHit>& hits, const W
   std::vector<DirectedHit> directed = with_directions(hits, params);
   std::vector<std::size_t> seeds(hits.size());
   std::iota(seeds.begin(), seeds.end(), std::size_t{0});
-  std::stable_sort(seeds.begin(), seeds.end(), [&](std::size_t a, std::size_t b) { return directed[a].aligned > directed[b].aligned; });
+  std::stable_sort(seeds.begin(), seeds.end(),
+                   [&](std::size_t a, std::size_t b) { return directed[a].aligned > directed[b].aligned; });
   std::vector<WallLine> walls;
   for (const std::size_t seed : seeds) {
     DirectedHit& start = directed[seed];
@@ -175,7 +181,8 @@ std::vector<WallLine> find_wall_lines(const std::vector<PosedHit>& hits, const W
     for (const std::size_t i : members) (is_wall ? directed[i].used : directed[i].failed_as_seed) = true;
     if (is_wall) walls.push_back(wall);
   }
-  std::stable_sort(walls.begin(), walls.end(), [](const WallLine& a, const WallLine& b) { return a.segment.length() > b.segment.length(); });
+  std::stable_sort(walls.begin(), walls.end(),
+                   [](const WallLine& a, const WallLine& b) { return a.segment.length() > b.segment.length(); });
   return walls;
 }
 

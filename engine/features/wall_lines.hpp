@@ -17,10 +17,10 @@ struct PosedHit {
 /// A straight wall face as seen: free space lies on the left of a -> b.
 struct WallLine {
   Segment2 segment;
-  int support = 0;           ///< hits on it
-  double sigma_m = 0;        ///< of its offset across, one standard deviation
-  double sigma_rad = 0;      ///< of its direction
-  double roughness_m = 0;    ///< rms distance of its hits: walls are below 0.03, furniture and smoke above
+  int support = 0;         ///< hits on it
+  double sigma_m = 0;      ///< of its offset across, one standard deviation
+  double sigma_rad = 0;    ///< of its direction
+  double roughness_m = 0;  ///< rms distance of its hits: walls are below 0.03, furniture and smoke above
 };
 
 struct WallLineParams {
@@ -30,7 +30,7 @@ struct WallLineParams {
   double largest_gap_m = 0.60;    ///< a longer hole ends the wall
   double min_length_m = 0.50;
   int min_support = 8;
-  double sigma_hit_m = 0.03;      ///< of one hit, systematic part included
+  double sigma_hit_m = 0.03;  ///< of one hit, systematic part included
   Result<Ok> validate() const;
 };
 

@@ -31,9 +31,8 @@ std::vector<PointPair> without_doubles(const std::vector<PointPair>& pairs) {
   std::vector<PointPair> nodes;
   std::vector<int> merged;
   for (const PointPair& pair : pairs) {
-    const auto same = std::find_if(nodes.begin(), nodes.end(), [&](const PointPair& n) {
-      return (n.p_b - pair.p_b).norm() < kSameNode_m;
-    });
+    const auto same = std::find_if(nodes.begin(), nodes.end(),
+                                   [&](const PointPair& n) { return (n.p_b - pair.p_b).norm() < kSameNode_m; });
     if (same == nodes.end()) {
       nodes.push_back(pair);
       merged.push_back(1);
@@ -60,7 +59,8 @@ std::vector<Point2> box_around(const std::vector<PointPair>& nodes) {
 }
 
 /// Pulls the corners of folded triangles towards the similarity, harder each round, until none is folded.
-bool unfold(const std::vector<Point2>& rigid, const std::vector<TriangleIndices>& triangles, std::vector<Point2>& target) {
+bool unfold(const std::vector<Point2>& rigid, const std::vector<TriangleIndices>& triangles,
+            std::vector<Point2>& target) {
   bool any = false;
   for (int round = 0; round < 40; ++round) {
     std::vector<bool> bad(target.size(), false);

@@ -18,7 +18,8 @@ class Deformation {
  public:
   /// The identity.
   Deformation();
-  /// @param pairs p_b = node before (source frame), p_a = the same node after (target frame). Two or more distinct ones;
+  /// @param pairs p_b = node before (source frame), p_a = the same node after (target frame). Two or more distinct
+  /// ones;
   ///              nodes closer than 1 mm in the source are merged; triangles that would fold are relaxed towards the
   ///              similarity (then `folded()` is true and those nodes are no longer met exactly).
   /// kDegenerate for fewer than two distinct nodes.
@@ -35,7 +36,8 @@ class Deformation {
   /// Best over all nodes; the identity for the identity.
   const Similarity2& similarity() const;
   /// The mesh as it was built, for drawing a picture warped: nodes before and after, triangles counter-clockwise in the
-  /// source frame. Its outermost ring is a box around the nodes, carried by the similarity. Empty for a bare similarity.
+  /// source frame. Its outermost ring is a box around the nodes, carried by the similarity. Empty for a bare
+  /// similarity.
   const std::vector<Point2>& mesh_source() const;
   const std::vector<Point2>& mesh_target() const;
   const std::vector<std::array<int, 3>>& mesh_triangles() const;

@@ -75,7 +75,8 @@ TriangleLocator::TriangleLocator(const std::vector<Point2>& points, const std::v
     high = high.cwiseMax(p);
   }
   const Point2 size = (high - low_).cwiseMax(1e-6);
-  cell_m_ = std::max({std::sqrt(size.x() * size.y() / static_cast<double>(triangles.size())), size.maxCoeff() / 500.0, 1e-6});
+  cell_m_ =
+      std::max({std::sqrt(size.x() * size.y() / static_cast<double>(triangles.size())), size.maxCoeff() / 500.0, 1e-6});
   columns_ = static_cast<int>(size.x() / cell_m_) + 1;
   rows_ = static_cast<int>(size.y() / cell_m_) + 1;
   buckets_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));

@@ -34,9 +34,7 @@ class Pose2 {
   friend Pose2 operator*(const Pose2& T_a_b, const Pose2& T_b_c) {
     return {T_a_b * T_b_c.translation_, T_a_b.heading_ + T_b_c.heading_};
   }
-  friend Point2 operator*(const Pose2& T_a_b, const Point2& p_b) {
-    return T_a_b.translation_ + T_a_b.rotation() * p_b;
-  }
+  friend Point2 operator*(const Pose2& T_a_b, const Point2& p_b) { return T_a_b.translation_ + T_a_b.rotation() * p_b; }
 
  private:
   Point2 translation_ = Point2::Zero();

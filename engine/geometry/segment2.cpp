@@ -37,9 +37,7 @@ Point2 closest_point(const Segment2& segment, const Point2& p) {
 
 double distance(const Segment2& segment, const Point2& p) { return (p - closest_point(segment, p)).norm(); }
 
-double signed_line_distance(const Segment2& segment, const Point2& p) {
-  return segment.normal().dot(p - segment.a);
-}
+double signed_line_distance(const Segment2& segment, const Point2& p) { return segment.normal().dot(p - segment.a); }
 
 std::optional<Point2> intersection(const Segment2& one, const Segment2& two) {
   const auto at = crossing(one, two);

@@ -12,9 +12,7 @@ struct Similarity2 {
   double scale = 1;
   Pose2 T_a_b;  ///< rotation and translation
 
-  Point2 operator*(const Point2& p_b) const {
-    return T_a_b.translation() + scale * (T_a_b.rotation() * p_b);
-  }
+  Point2 operator*(const Point2& p_b) const { return T_a_b.translation() + scale * (T_a_b.rotation() * p_b); }
   Similarity2 inverse() const;
 };
 

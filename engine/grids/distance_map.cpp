@@ -63,7 +63,8 @@ DistanceMap DistanceMap::from_segments(const std::vector<EndPoints>& segments, d
   map.distance_m_.assign(map.frame_.cell_count(), static_cast<float>(limit_m));
   const Eigen::Vector2d reach = Eigen::Vector2d::Constant(limit_m);
   for (const EndPoints& s : segments) {
-    const Cell from = map.frame_.cell_of(s.first.cwiseMin(s.second) - reach), to = map.frame_.cell_of(s.first.cwiseMax(s.second) + reach);
+    const Cell from = map.frame_.cell_of(s.first.cwiseMin(s.second) - reach),
+               to = map.frame_.cell_of(s.first.cwiseMax(s.second) + reach);
     for (int y = std::max(0, from.y); y <= std::min(map.frame_.height_cells - 1, to.y); ++y)
       for (int x = std::max(0, from.x); x <= std::min(map.frame_.width_cells - 1, to.x); ++x) {
         float& cell = map.distance_m_[map.frame_.index({x, y})];
@@ -75,7 +76,8 @@ DistanceMap DistanceMap::from_segments(const std::vector<EndPoints>& segments, d
 
 bool DistanceMap::corners_of(const Eigen::Vector2d& p, Corners& corners) const {
   if (distance_m_.empty()) return false;
-  const double x = (p.x() - frame_.origin.x()) / frame_.resolution_m - 0.5, y = (p.y() - frame_.origin.y()) / frame_.resolution_m - 0.5;
+  const double x = (p.x() - frame_.origin.x()) / frame_.resolution_m - 0.5,
+               y = (p.y() - frame_.origin.y()) / frame_.resolution_m - 0.5;
   if (!(x >= 0 && y >= 0 && x < frame_.width_cells - 1 && y < frame_.height_cells - 1)) return false;
   const Cell low{static_cast<int>(x), static_cast<int>(y)};
   const std::size_t at = frame_.index(low), above = at + static_cast<std::size_t>(frame_.width_cells);
@@ -86,7 +88,8 @@ bool DistanceMap::corners_of(const Eigen::Vector2d& p, Corners& corners) const {
 double DistanceMap::at(const Eigen::Vector2d& p) const {
   Corners c;
   if (!corners_of(p, c)) return limit_m_;
-  const double low = c.low_left + c.u * (c.low_right - c.low_left), high = c.high_left + c.u * (c.high_right - c.high_left);
+  const double low = c.low_left + c.u * (c.low_right - c.low_left),
+               high = c.high_left + c.u * (c.high_right - c.high_left);
   return low + c.v * (high - low);
 }
 

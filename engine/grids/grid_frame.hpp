@@ -27,9 +27,7 @@ struct GridFrame {
   Eigen::Vector2d center_of(Cell cell) const {
     return origin + resolution_m * Eigen::Vector2d(cell.x + 0.5, cell.y + 0.5);
   }
-  bool contains(Cell cell) const {
-    return cell.x >= 0 && cell.y >= 0 && cell.x < width_cells && cell.y < height_cells;
-  }
+  bool contains(Cell cell) const { return cell.x >= 0 && cell.y >= 0 && cell.x < width_cells && cell.y < height_cells; }
   std::size_t index(Cell cell) const {
     return static_cast<std::size_t>(cell.y) * static_cast<std::size_t>(width_cells) + static_cast<std::size_t>(cell.x);
   }

@@ -33,7 +33,8 @@ void LogOddsGrid::reserve(const Eigen::Vector2d& low, const Eigen::Vector2d& hig
     const Cell shift = wider.cell_of(frame_.center_of({0, 0}));
     for (int y = 0; y < frame_.height_cells; ++y) {
       const auto row = counts_.begin() + static_cast<std::ptrdiff_t>(frame_.index({0, y}));
-      std::copy(row, row + frame_.width_cells, moved.begin() + static_cast<std::ptrdiff_t>(wider.index({shift.x, y + shift.y})));
+      std::copy(row, row + frame_.width_cells,
+                moved.begin() + static_cast<std::ptrdiff_t>(wider.index({shift.x, y + shift.y})));
     }
   }
   frame_ = wider;
@@ -68,7 +69,8 @@ bool LogOddsGrid::seen(Cell cell) const {
 
 std::int8_t LogOddsGrid::percent(const Counts& counts) const {
   if (counts.hits == 0 && counts.passes == 0) return OccupancyGrid::kUnknown;
-  const double sum = std::clamp(counts.hits * params_.hit + counts.passes * params_.pass, -params_.clamp, params_.clamp);
+  const double sum =
+      std::clamp(counts.hits * params_.hit + counts.passes * params_.pass, -params_.clamp, params_.clamp);
   return static_cast<std::int8_t>(std::lround(100.0 / (1.0 + std::exp(-sum))));
 }
 

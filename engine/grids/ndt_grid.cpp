@@ -16,7 +16,8 @@ std::uint64_t cell_key(Cell cell) {
 }
 
 Cell cell_from(std::uint64_t key) {
-  return {static_cast<std::int32_t>(static_cast<std::uint32_t>(key)), static_cast<std::int32_t>(static_cast<std::uint32_t>(key >> 32))};
+  return {static_cast<std::int32_t>(static_cast<std::uint32_t>(key)),
+          static_cast<std::int32_t>(static_cast<std::uint32_t>(key >> 32))};
 }
 
 void shift(NdtCell& cell, double by) { cell.log_odds = std::clamp(cell.log_odds + by, -kClampLogOdds, kClampLogOdds); }

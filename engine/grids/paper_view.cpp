@@ -17,8 +17,11 @@ Result<cv::Mat> as_bgr(const cv::Mat& picture) {
   }
   cv::Mat bgr;
   switch (eight.channels()) {
-    case 1: cv::cvtColor(eight, bgr, cv::COLOR_GRAY2BGR); return bgr;
-    case 3: return eight;
+    case 1:
+      cv::cvtColor(eight, bgr, cv::COLOR_GRAY2BGR);
+      return bgr;
+    case 3:
+      return eight;
     case 4: {
       cv::cvtColor(eight, bgr, cv::COLOR_BGRA2BGR);
       cv::Mat alpha;
@@ -26,11 +29,13 @@ Result<cv::Mat> as_bgr(const cv::Mat& picture) {
       for (int y = 0; y < bgr.rows; ++y)
         for (int x = 0; x < bgr.cols; ++x) {
           const int a = alpha.at<uchar>(y, x);
-          for (auto& value : bgr.at<cv::Vec3b>(y, x).val) value = static_cast<uchar>((value * a + 255 * (255 - a)) / 255);
+          for (auto& value : bgr.at<cv::Vec3b>(y, x).val)
+            value = static_cast<uchar>((value * a + 255 * (255 - a)) / 255);
         }
       return bgr;
     }
-    default: return fail(Errc::kInvalidArgument, "the picture must have 1, 3 or 4 channels");
+    default:
+      return fail(Errc::kInvalidArgument, "the picture must have 1, 3 or 4 channels");
   }
 }
 
@@ -42,18 +47,21 @@ WorkPicture at_work_size(const cv::Mat& bgr, double min_long_side_px, double max
   if (scale == 1) return {bgr, 1};
   WorkPicture work;
   work.scale = scale;
-  const cv::Size size(std::max(1, static_cast<int>(bgr.cols * scale + 0.5)), std::max(1, static_cast<int>(bgr.rows * scale + 0.5)));
+  const cv::Size size(std::max(1, static_cast<int>(bgr.cols * scale + 0.5)),
+                      std::max(1, static_cast<int>(bgr.rows * scale + 0.5)));
   cv::resize(bgr, work.bgr, size, 0, 0, scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
   return work;
 }
 
 namespace {
 
-/// Brightness of the paper around every pixel, at an eighth of the size: the bright end of each neighbourhood, smoothed.
+/// Brightness of the paper around every pixel, at an eighth of the size: the bright end of each neighbourhood,
+/// smoothed.
 cv::Mat background_of(const cv::Mat& bgr, double share) {
   const double shrink = 8;
   cv::Mat small;
-  const cv::Size size(std::max(1, static_cast<int>(bgr.cols / shrink)), std::max(1, static_cast<int>(bgr.rows / shrink)));
+  const cv::Size size(std::max(1, static_cast<int>(bgr.cols / shrink)),
+                      std::max(1, static_cast<int>(bgr.rows / shrink)));
   cv::resize(bgr, small, size, 0, 0, cv::INTER_AREA);
   const int radius = std::max(1, static_cast<int>(share * std::max(size.width, size.height)));
   const cv::Mat disc = cv::getStructuringElement(cv::MORPH_RECT, {2 * radius + 1, 2 * radius + 1});

@@ -55,8 +55,10 @@ LayoutMap with_degrees(LayoutMap layout) {
 }
 
 Result<LayoutMap> add_wall(LayoutMap layout, const Segment2& wall_px, double snap_px, double thickness_px) {
-  if (!wall_px.a.allFinite() || !wall_px.b.allFinite()) return fail(Errc::kInvalidArgument, "a wall end is not a number");
-  if (!(snap_px >= 0) || !(thickness_px > 0)) return fail(Errc::kInvalidArgument, "snap and thickness of a wall must be positive");
+  if (!wall_px.a.allFinite() || !wall_px.b.allFinite())
+    return fail(Errc::kInvalidArgument, "a wall end is not a number");
+  if (!(snap_px >= 0) || !(thickness_px > 0))
+    return fail(Errc::kInvalidArgument, "snap and thickness of a wall must be positive");
   const int a = corner_for(layout, wall_px.a, snap_px);
   const int b = corner_for(layout, wall_px.b, snap_px);
   if (a == b) return fail(Errc::kInvalidArgument, "both ends of the wall fall on the same corner");
@@ -69,7 +71,8 @@ Result<LayoutMap> add_wall(LayoutMap layout, const Segment2& wall_px, double sna
 }
 
 Result<LayoutMap> remove_wall(LayoutMap layout, int wall) {
-  if (wall < 0 || wall >= static_cast<int>(layout.walls.size())) return fail(Errc::kNotFound, "there is no wall " + std::to_string(wall));
+  if (wall < 0 || wall >= static_cast<int>(layout.walls.size()))
+    return fail(Errc::kNotFound, "there is no wall " + std::to_string(wall));
   layout.walls.erase(layout.walls.begin() + wall);
   layout = with_degrees(std::move(layout));
   std::vector<int> place(layout.corners.size(), -1);

@@ -9,7 +9,7 @@ namespace {
 
 struct Neighbour {
   std::size_t other = 0;
-  double offset = 0;  ///< signed distance of the other line
+  double offset = 0;         ///< signed distance of the other line
   double low = 0, high = 0;  ///< where both run side by side, along this line
 };
 
@@ -64,7 +64,9 @@ std::vector<InkStroke> without_ladders(const std::vector<InkStroke>& strokes, do
       if (alike(i, n) && has_rung(around[i], n.offset, n.low, n.high)) rung[i] = true;
   std::vector<InkStroke> kept;
   for (std::size_t i = 0; i < strokes.size(); ++i) {
-    const bool outermost = std::any_of(around[i].begin(), around[i].end(), [&](const Neighbour& n) { return rung[n.other] && alike(i, n) && strokes[i].length() < 1.3 * strokes[n.other].length(); });
+    const bool outermost = std::any_of(around[i].begin(), around[i].end(), [&](const Neighbour& n) {
+      return rung[n.other] && alike(i, n) && strokes[i].length() < 1.3 * strokes[n.other].length();
+    });
     if (!rung[i] && !outermost) kept.push_back(strokes[i]);
   }
   return kept;
@@ -78,11 +80,13 @@ std::vector<InkStroke> pair_hollow(const std::vector<InkStroke>& thin, double ma
       const auto& line = thin[i];
       const auto& other = thin[n.other];
       const double spacing = std::abs(n.offset);
-      if (n.other < i || spacing > max_spacing_px || spacing < 1.6 * std::max(line.thickness_px, other.thickness_px)) continue;
+      if (n.other < i || spacing > max_spacing_px || spacing < 1.6 * std::max(line.thickness_px, other.thickness_px))
+        continue;
       if (n.high - n.low < 2.0 * spacing) continue;
       // nothing between: a nearer parallel line belongs to it first
       const bool nearer = std::any_of(around[i].begin(), around[i].end(), [&](const Neighbour& m) {
-        return m.offset * n.offset > 0 && std::abs(m.offset) < 0.9 * spacing && std::min(m.high, n.high) - std::max(m.low, n.low) > 0.5 * (n.high - n.low);
+        return m.offset * n.offset > 0 && std::abs(m.offset) < 0.9 * spacing &&
+               std::min(m.high, n.high) - std::max(m.low, n.low) > 0.5 * (n.high - n.low);
       });
       if (nearer || has_rung(around[i], n.offset, n.low, n.high)) continue;
       const double back = signed_line_distance(other.axis, line.axis.midpoint());
@@ -103,7 +107,8 @@ std::vector<InkStroke> pair_hollow(const std::vector<InkStroke>& thin, double ma
 }
 
 std::vector<InkStroke> merge_collinear(std::vector<InkStroke> strokes, double angle_deg, double gap_px) {
-  std::stable_sort(strokes.begin(), strokes.end(), [](const InkStroke& a, const InkStroke& b) { return a.length() > b.length(); });
+  std::stable_sort(strokes.begin(), strokes.end(),
+                   [](const InkStroke& a, const InkStroke& b) { return a.length() > b.length(); });
   for (bool changed = true; changed;) {
     changed = false;
     for (std::size_t i = 0; i < strokes.size(); ++i) {
@@ -111,7 +116,8 @@ std::vector<InkStroke> merge_collinear(std::vector<InkStroke> strokes, double an
         auto& big = strokes[i];
         const auto& small = strokes[j];
         const double side = std::max(2.0, 0.5 * std::max(big.thickness_px, small.thickness_px));
-        const double low = along(big.axis, small.axis.a) * big.length(), high = along(big.axis, small.axis.b) * big.length();
+        const double low = along(big.axis, small.axis.a) * big.length(),
+                     high = along(big.axis, small.axis.b) * big.length();
         const bool joins = line_angle_between(big.axis.heading(), small.axis.heading()) < radians(angle_deg) &&
                            std::abs(signed_line_distance(big.axis, small.axis.a)) < side &&
                            std::abs(signed_line_distance(big.axis, small.axis.b)) < side &&
@@ -124,7 +130,8 @@ std::vector<InkStroke> merge_collinear(std::vector<InkStroke> strokes, double an
         const Point2 u = big.axis.direction(), origin = big.axis.a;
         const double from = std::min({0.0, low, high}), to = std::max({big.length(), low, high});
         big.thickness_px = (big.thickness_px * big.length() + small.thickness_px * small.length()) / sum;
-        big.coverage = std::min(1.0, (big.coverage * big.length() + small.coverage * small.length()) / std::max(1.0, to - from));
+        big.coverage =
+            std::min(1.0, (big.coverage * big.length() + small.coverage * small.length()) / std::max(1.0, to - from));
         big.axis = {origin + from * u, origin + to * u};
         strokes.erase(strokes.begin() + static_cast<std::ptrdiff_t>(j));
         changed = true;

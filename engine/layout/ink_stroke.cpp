@@ -1,7 +1,7 @@
-// Idea: an edge knows where a wall is and how it runs; the ink behind it knows how thick it is and how far it goes. Edges come
-// from the line segment detector. From each, rays into the dark side give the width, which places the centre line; the centre
-// line is then walked, pixel by pixel, while the ink's cross-section stays what it was. A map of claimed pixels keeps the
-// second edge of the same wall from making a second stroke.
+// Idea: an edge knows where a wall is and how it runs; the ink behind it knows how thick it is and how far it goes.
+// Edges come from the line segment detector. From each, rays into the dark side give the width, which places the centre
+// line; the centre line is then walked, pixel by pixel, while the ink's cross-section stays what it was. A map of
+// claimed pixels keeps the second edge of the same wall from making a second stroke.
 #include "layout/ink_stroke.hpp"
 
 #include <algorithm>
@@ -121,7 +121,8 @@ struct Walk {
   int present = 0;
 };
 
-/// Follows the axis both ways while the cross-section holds. Wider ink (a crossing wall) is walked through, not counted.
+/// Follows the axis both ways while the cross-section holds. Wider ink (a crossing wall) is walked through, not
+/// counted.
 Walk walk_axis(const Ink& ink, const Segment2& axis, double width) {
   const Point2 u = axis.direction(), n = axis.normal();
   const double length = axis.length();
@@ -133,7 +134,8 @@ Walk walk_axis(const Ink& ink, const Segment2& axis, double width) {
     const auto cut = cross_section(ink, axis.a + s * u, n, slack);
     if (!cut) return gap += 1, true;
     gap = 0;
-    const bool clean = cut->width <= 1.5 * width + 1 && cut->width >= 0.5 * width - 1 && std::abs(cut->middle) <= slack + 0.5;
+    const bool clean =
+        cut->width <= 1.5 * width + 1 && cut->width >= 0.5 * width - 1 && std::abs(cut->middle) <= slack + 0.5;
     if (!clean) return wide += 1, true;
     wide = 0;
     edge = s;
@@ -211,7 +213,8 @@ void measure(const Ink& ink, InkStroke& stroke, double width) {
 
 class Tracer {
  public:
-  Tracer(const Ink& ink, const LayoutParams& params) : ink_(ink), params_(params), claimed_(ink.darkness.size(), CV_16UC1, cv::Scalar(0)) {}
+  Tracer(const Ink& ink, const LayoutParams& params)
+      : ink_(ink), params_(params), claimed_(ink.darkness.size(), CV_16UC1, cv::Scalar(0)) {}
 
   void add(const Segment2& edge) {
     if (strokes_.size() >= 65000) return;
@@ -246,13 +249,16 @@ class Tracer {
       if (x < 0 || y < 0 || x >= claimed_.cols || y >= claimed_.rows) continue;
       const int owner = claimed_.at<ushort>(y, x);
       if (owner == 0) continue;
-      const double turn = line_angle_between(strokes_[static_cast<std::size_t>(owner - 1)].axis.heading(), axis.heading());
+      const double turn =
+          line_angle_between(strokes_[static_cast<std::size_t>(owner - 1)].axis.heading(), axis.heading());
       if (turn < radians(4 * params_.merge_angle_deg)) inside += 1;
     }
     return all == 0 || inside * 2 > all;
   }
   void claim(const InkStroke& stroke, double width) {
-    const auto px = [](const Point2& p) { return cv::Point(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))); };
+    const auto px = [](const Point2& p) {
+      return cv::Point(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+    };
     cv::line(claimed_, px(stroke.axis.a), px(stroke.axis.b), cv::Scalar(static_cast<double>(strokes_.size() + 1)),
              static_cast<int>(std::lround(width)) + 2);
   }
@@ -276,7 +282,8 @@ std::vector<Segment2> find_edges(const cv::Mat& darkness) {
     const Point2 shift(0, top);
     for (const auto& l : lines) edges.push_back({Point2(l[0], l[1]) + shift, Point2(l[2], l[3]) + shift});
   }
-  std::stable_sort(edges.begin(), edges.end(), [](const Segment2& a, const Segment2& b) { return a.length() > b.length(); });
+  std::stable_sort(edges.begin(), edges.end(),
+                   [](const Segment2& a, const Segment2& b) { return a.length() > b.length(); });
   return edges;
 }
 

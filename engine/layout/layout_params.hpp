@@ -8,15 +8,15 @@ namespace smokemap {
 /// plan's own walls (`_walls`), which is measured first. Nothing here is in pixels.
 struct LayoutParams {
   // intake
-  double max_megapixels = 40;        ///< larger pictures are refused
-  double work_long_side_px = 3400;   ///< larger pictures are read at this size
-  double min_long_side_px = 1600;    ///< smaller ones are enlarged (at most twice): thin walls need some pixels across
+  double max_megapixels = 40;       ///< larger pictures are refused
+  double work_long_side_px = 3400;  ///< larger pictures are read at this size
+  double min_long_side_px = 1600;   ///< smaller ones are enlarged (at most twice): thin walls need some pixels across
 
   // light and colour
-  double background_share = 0.035;   ///< radius of what counts as paper around a pixel
-  double ink_low = 0.20;             ///< ink is half as dark as the darkest around it, within these limits (1 = black)
+  double background_share = 0.035;  ///< radius of what counts as paper around a pixel
+  double ink_low = 0.20;            ///< ink is half as dark as the darkest around it, within these limits (1 = black)
   double ink_high = 0.50;
-  double colour_chroma = 0.27;       ///< from here on a pixel is coloured: signs, routes, headers
+  double colour_chroma = 0.27;  ///< from here on a pixel is coloured: signs, routes, headers
 
   // walls
   double min_wall_share = 0.008;     ///< shorter pieces are text, furniture or noise
@@ -27,8 +27,8 @@ struct LayoutParams {
   double max_opening_share = 0.075;  ///< of the plan's long side: wider gaps are no doors
 
   // scale
-  double door_width_m = 0.90;        ///< what a median door of a public building measures
-  double door_width_sigma = 0.20;    ///< relative error of a scale guessed from doors
+  double door_width_m = 0.90;      ///< what a median door of a public building measures
+  double door_width_sigma = 0.20;  ///< relative error of a scale guessed from doors
 
   Result<Ok> validate() const;
 };

@@ -11,7 +11,8 @@ namespace {
 void draw(cv::Mat& mask, const Segment2& segment, double scale, int width, int value) {
   const int bits = 4;
   const auto fixed = [&](const Point2& p) {
-    return cv::Point(static_cast<int>(std::lround(p.x() * scale * (1 << bits))), static_cast<int>(std::lround(p.y() * scale * (1 << bits))));
+    return cv::Point(static_cast<int>(std::lround(p.x() * scale * (1 << bits))),
+                     static_cast<int>(std::lround(p.y() * scale * (1 << bits))));
   };
   cv::line(mask, fixed(segment.a), fixed(segment.b), cv::Scalar(value), width, cv::LINE_8, bits);
 }
@@ -22,9 +23,11 @@ Result<cv::Mat> layout_free_space(const LayoutMap& layout, double scale) {
   if (!(scale > 0) || !std::isfinite(scale)) return fail(Errc::kInvalidArgument, "the scale must be positive");
   const double columns = std::round(layout.width_px * scale), rows = std::round(layout.height_px * scale);
   if (columns < 1 || rows < 1) return fail(Errc::kInvalidArgument, "the layout has no size");
-  if (columns * rows > 40e6) return fail(Errc::kInvalidArgument, "the picture of the layout would be over 40 megapixels");
+  if (columns * rows > 40e6)
+    return fail(Errc::kInvalidArgument, "the picture of the layout would be over 40 megapixels");
   for (const auto& c : layout.corners)
-    if (!c.p_px.allFinite() || c.p_px.cwiseAbs().maxCoeff() > 1e6) return fail(Errc::kInvalidArgument, "a corner of the layout is not a number");
+    if (!c.p_px.allFinite() || c.p_px.cwiseAbs().maxCoeff() > 1e6)
+      return fail(Errc::kInvalidArgument, "a corner of the layout is not a number");
 
   const int border = 2;
   cv::Mat walls = cv::Mat::zeros(static_cast<int>(rows) + 2 * border, static_cast<int>(columns) + 2 * border, CV_8UC1);

@@ -117,7 +117,8 @@ void close_gaps(LayoutMap& map, const std::vector<InkStroke>& thin, const cv::Ma
     low_y = std::min(low_y, c.p_px.y()), high_y = std::max(high_y, c.p_px.y());
   }
   const double plan = std::max(high_x - low_x, high_y - low_y);
-  const double reach = std::max(params.max_opening_share * plan, std::min(2.5 * params.max_opening_share * plan, 9 * thickness_px));
+  const double reach =
+      std::max(params.max_opening_share * plan, std::min(2.5 * params.max_opening_share * plan, 9 * thickness_px));
   for (const auto& gap : gaps_ahead(map, thickness_px, reach)) {
     if (covered_share(gap.segment, covered) > 0.55) {
       int b = gap.corner_b;

@@ -39,12 +39,15 @@ std::optional<LayoutScale> scale_from_doors(const LayoutMap& map, const LayoutPa
 
 void add_warnings(LayoutMap& map, const WallStrokes& strokes, double extent_px) {
   if (strokes.regions > 1)
-    map.warnings.push_back("The sheet shows " + std::to_string(strokes.regions) + " drawings that could be the plan; the one with most walls was read.");
+    map.warnings.push_back("The sheet shows " + std::to_string(strokes.regions) +
+                           " drawings that could be the plan; the one with most walls was read.");
   if (map.walls.size() < 8) map.warnings.push_back("Few walls were found: check the plan against the picture.");
   if (map.rooms_px.empty()) map.warnings.push_back("No closed room was found: walls may be missing.");
   if (extent_px < 500) map.warnings.push_back("The plan is small in the picture: thin walls may be missing.");
-  if (!map.scale) map.warnings.push_back("The scale is not known: measure one length.");
-  else if (!map.scale->by_person) map.warnings.push_back("The scale is guessed from doors: measure one length.");
+  if (!map.scale)
+    map.warnings.push_back("The scale is not known: measure one length.");
+  else if (!map.scale->by_person)
+    map.warnings.push_back("The scale is guessed from doors: measure one length.");
 }
 
 /// Darkness without what has a colour, and without signs: routes, headers and pictograms are no ink.
@@ -55,14 +58,16 @@ cv::Mat gray_ink(const PaperView& view, const cv::Mat& covered) {
   return ink;
 }
 
-Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& options, const LayoutParams& params, const Progress& progress) {
+Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& options, const LayoutParams& params,
+                                   const Progress& progress) {
   if (const auto valid = params.validate(); !valid) return valid.error();
   if (options.metres_per_pixel && !(*options.metres_per_pixel > 0 && std::isfinite(*options.metres_per_pixel)))
     return fail(Errc::kInvalidArgument, "metres per pixel must be positive");
   const double megapixels = static_cast<double>(picture.rows) * picture.cols * 1e-6;
   if (megapixels > params.max_megapixels)
-    return fail(Errc::kTooLarge, "the picture has " + std::to_string(static_cast<int>(megapixels)) + " megapixels, at most " +
-                                     std::to_string(static_cast<int>(params.max_megapixels)) + " are read");
+    return fail(Errc::kTooLarge, "the picture has " + std::to_string(static_cast<int>(megapixels)) +
+                                     " megapixels, at most " + std::to_string(static_cast<int>(params.max_megapixels)) +
+                                     " are read");
   const auto bgr = as_bgr(picture);
   if (!bgr) return bgr.error();
 
@@ -103,8 +108,10 @@ Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& 
   map.width_px = reading.rectified.cols;
   map.height_px = reading.rectified.rows;
   map.rooms_px = find_rooms(map);
-  if (options.metres_per_pixel) map.scale = LayoutScale{*options.metres_per_pixel, 0.02, true};
-  else map.scale = scale_from_doors(map, params);
+  if (options.metres_per_pixel)
+    map.scale = LayoutScale{*options.metres_per_pixel, 0.02, true};
+  else
+    map.scale = scale_from_doors(map, params);
   Point2 low = map.corners.front().p_px, high = low;
   for (const auto& c : map.corners) low = low.cwiseMin(c.p_px), high = high.cwiseMax(c.p_px);
   add_warnings(map, chosen, (high - low).maxCoeff());

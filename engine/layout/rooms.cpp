@@ -15,7 +15,8 @@ std::vector<Segment2> shutters(const LayoutMap& map, double reach_px) {
     for (const bool at_b : {false, true}) {
       const Point2 end = at_b ? wall.b : wall.a, outward = at_b ? wall.direction() : Point2(-wall.direction());
       const auto corner = static_cast<std::size_t>(at_b ? map.walls[w].corner_b : map.walls[w].corner_a);
-      const bool met = map.corners[corner].degree > 1 || std::any_of(map.openings.begin(), map.openings.end(), [&](const LayoutOpening& o) {
+      const bool met = map.corners[corner].degree > 1 ||
+                       std::any_of(map.openings.begin(), map.openings.end(), [&](const LayoutOpening& o) {
                          return (o.gap_px.a - end).norm() < 1.5 || (o.gap_px.b - end).norm() < 1.5;
                        });
       if (met) continue;
@@ -46,14 +47,15 @@ std::vector<Polygon> find_rooms(const LayoutMap& map) {
     const Point2 q = scale * (p - low);
     return cv::Point(static_cast<int>(std::lround(q.x())) + border, static_cast<int>(std::lround(q.y())) + border);
   };
-  cv::Mat closed(static_cast<int>((high - low).y() * scale) + 2 * border + 2, static_cast<int>((high - low).x() * scale) + 2 * border + 2,
-                 CV_8UC1, cv::Scalar(255));
+  cv::Mat closed(static_cast<int>((high - low).y() * scale) + 2 * border + 2,
+                 static_cast<int>((high - low).x() * scale) + 2 * border + 2, CV_8UC1, cv::Scalar(255));
   for (std::size_t w = 0; w < map.walls.size(); ++w) {
     const Segment2 s = map.wall_px(static_cast<int>(w));
     cv::line(closed, to_raster(s.a), to_raster(s.b), cv::Scalar(0), 3);
   }
   for (const auto& o : map.openings) cv::line(closed, to_raster(o.gap_px.a), to_raster(o.gap_px.b), cv::Scalar(0), 3);
-  for (const auto& line : shutters(map, 0.05 * extent)) cv::line(closed, to_raster(line.a), to_raster(line.b), cv::Scalar(0), 3);
+  for (const auto& line : shutters(map, 0.05 * extent))
+    cv::line(closed, to_raster(line.a), to_raster(line.b), cv::Scalar(0), 3);
   cv::floodFill(closed, {0, 0}, cv::Scalar(0));
   cv::Mat labels, stats, centroids;
   const int count = cv::connectedComponentsWithStats(closed, labels, stats, centroids, 4);
@@ -63,12 +65,15 @@ std::vector<Polygon> find_rooms(const LayoutMap& map) {
     if (area < 0.0005 * 1400 * 1400) continue;
     const cv::Rect box(stats.at<int>(label, cv::CC_STAT_LEFT), stats.at<int>(label, cv::CC_STAT_TOP),
                        stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT));
-    const cv::Rect wide = cv::Rect(box.x - 2, box.y - 2, box.width + 4, box.height + 4) & cv::Rect(0, 0, closed.cols, closed.rows);
+    const cv::Rect wide =
+        cv::Rect(box.x - 2, box.y - 2, box.width + 4, box.height + 4) & cv::Rect(0, 0, closed.cols, closed.rows);
     cv::Mat mask = labels(wide) == label;
     cv::dilate(mask, mask, cv::Mat());
     std::vector<std::vector<cv::Point>> outlines;
     cv::findContours(mask, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_SIMPLE);
-    const auto& outline = *std::max_element(outlines.begin(), outlines.end(), [](const auto& a, const auto& b) { return cv::contourArea(a) < cv::contourArea(b); });
+    const auto& outline = *std::max_element(outlines.begin(), outlines.end(), [](const auto& a, const auto& b) {
+      return cv::contourArea(a) < cv::contourArea(b);
+    });
     std::vector<cv::Point> simple;
     cv::approxPolyDP(outline, simple, 2.5, true);
     if (simple.size() < 3) continue;

@@ -22,7 +22,8 @@ SheetCorners in_order(const std::vector<cv::Point2f>& quad) {
   std::sort(corners.begin(), corners.end(), [&](const Point2& a, const Point2& b) {
     return std::atan2(a.y() - middle.y(), a.x() - middle.x()) < std::atan2(b.y() - middle.y(), b.x() - middle.x());
   });
-  const auto first = std::min_element(corners.begin(), corners.end(), [](const Point2& a, const Point2& b) { return a.sum() < b.sum(); });
+  const auto first = std::min_element(corners.begin(), corners.end(),
+                                      [](const Point2& a, const Point2& b) { return a.sum() < b.sum(); });
   std::rotate(corners.begin(), first, corners.end());
   return corners;
 }
@@ -35,7 +36,8 @@ SheetCorners whole_picture(cv::Size size) {
 /// The quadrilateral that hugs a hull: corners are dropped where that adds least, until four are left.
 std::vector<cv::Point2f> hugging_quad(const std::vector<cv::Point>& hull) {
   std::vector<cv::Point2f> corners(hull.begin(), hull.end());
-  for (double epsilon = 1; corners.size() > 4 && epsilon < 200; epsilon *= 1.3) cv::approxPolyDP(corners, corners, epsilon, true);
+  for (double epsilon = 1; corners.size() > 4 && epsilon < 200; epsilon *= 1.3)
+    cv::approxPolyDP(corners, corners, epsilon, true);
   return corners;
 }
 
@@ -54,7 +56,9 @@ SheetProposal propose_sheet(const cv::Mat& bgr) {
   std::vector<std::vector<cv::Point>> outlines;
   cv::findContours(bright, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
   if (outlines.empty()) return proposal;
-  const auto& outline = *std::max_element(outlines.begin(), outlines.end(), [](const auto& a, const auto& b) { return cv::contourArea(a) < cv::contourArea(b); });
+  const auto& outline = *std::max_element(outlines.begin(), outlines.end(), [](const auto& a, const auto& b) {
+    return cv::contourArea(a) < cv::contourArea(b);
+  });
   std::vector<cv::Point> hull;
   cv::convexHull(outline, hull);
   const auto quad = hugging_quad(hull);
@@ -63,7 +67,8 @@ SheetProposal propose_sheet(const cv::Mat& bgr) {
   const double fit = std::min(cv::contourArea(hull), area) / std::max(cv::contourArea(hull), area);
   if (share < 0.2 || fit < 0.9) return proposal;
   std::vector<cv::Point2f> full;
-  for (const auto& p : quad) full.emplace_back(static_cast<float>((p.x + 0.5) * shrink - 0.5), static_cast<float>((p.y + 0.5) * shrink - 0.5));
+  for (const auto& p : quad)
+    full.emplace_back(static_cast<float>((p.x + 0.5) * shrink - 0.5), static_cast<float>((p.y + 0.5) * shrink - 0.5));
   proposal.corners_px = in_order(full);
   proposal.confidence = share > 0.97 ? 0 : std::clamp((fit - 0.9) * 10, 0.0, 1.0);
   if (proposal.confidence == 0) proposal.corners_px = whole_picture(bgr.size());
@@ -72,9 +77,11 @@ SheetProposal propose_sheet(const cv::Mat& bgr) {
 
 Result<RectifiedSheet> rectify_sheet(const cv::Mat& bgr, const SheetCorners& corners_px, double max_megapixels) {
   for (std::size_t i = 0; i < 4; ++i) {
-    if (!corners_px[i].allFinite() || corners_px[i].cwiseAbs().maxCoeff() > 1e6) return fail(Errc::kInvalidArgument, "a sheet corner is not a number");
+    if (!corners_px[i].allFinite() || corners_px[i].cwiseAbs().maxCoeff() > 1e6)
+      return fail(Errc::kInvalidArgument, "a sheet corner is not a number");
     if (turn_at(corners_px[i], corners_px[(i + 1) % 4], corners_px[(i + 2) % 4]) <= 1)
-      return fail(Errc::kInvalidArgument, "the sheet corners must make a convex quadrilateral, clockwise from its top left");
+      return fail(Errc::kInvalidArgument,
+                  "the sheet corners must make a convex quadrilateral, clockwise from its top left");
   }
   const auto side = [&](std::size_t a, std::size_t b) { return (corners_px[a] - corners_px[b]).norm(); };
   double width = 0.5 * (side(0, 1) + side(3, 2)), height = 0.5 * (side(0, 3) + side(1, 2));
@@ -82,13 +89,17 @@ Result<RectifiedSheet> rectify_sheet(const cv::Mat& bgr, const SheetCorners& cor
   const double ratio = std::max(width, height) / std::min(width, height), a_series = std::sqrt(2.0);
   if (std::abs(ratio / a_series - 1) < 0.10) (width > height ? width : height) = a_series * std::min(width, height);
   const double shrink = std::min(1.0, std::sqrt(max_megapixels * 1e6 / (width * height)));
-  const auto columns = static_cast<float>(std::lround(width * shrink)), rows = static_cast<float>(std::lround(height * shrink));
+  const auto columns = static_cast<float>(std::lround(width * shrink)),
+             rows = static_cast<float>(std::lround(height * shrink));
   std::array<cv::Point2f, 4> from;
-  for (std::size_t i = 0; i < 4; ++i) from[i] = {static_cast<float>(corners_px[i].x()), static_cast<float>(corners_px[i].y())};
-  const std::array<cv::Point2f, 4> to{cv::Point2f(0, 0), cv::Point2f(columns - 1, 0), cv::Point2f(columns - 1, rows - 1), cv::Point2f(0, rows - 1)};
+  for (std::size_t i = 0; i < 4; ++i)
+    from[i] = {static_cast<float>(corners_px[i].x()), static_cast<float>(corners_px[i].y())};
+  const std::array<cv::Point2f, 4> to{cv::Point2f(0, 0), cv::Point2f(columns - 1, 0),
+                                      cv::Point2f(columns - 1, rows - 1), cv::Point2f(0, rows - 1)};
   const cv::Mat H = cv::getPerspectiveTransform(from.data(), to.data());
   RectifiedSheet sheet;
-  cv::warpPerspective(bgr, sheet.bgr, H, cv::Size(static_cast<int>(columns), static_cast<int>(rows)), cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar(255, 255, 255));
+  cv::warpPerspective(bgr, sheet.bgr, H, cv::Size(static_cast<int>(columns), static_cast<int>(rows)), cv::INTER_LINEAR,
+                      cv::BORDER_CONSTANT, cv::Scalar(255, 255, 255));
   for (int i = 0; i < 9; ++i) sheet.homography.H_layout_photo[static_cast<std::size_t>(i)] = H.at<double>(i / 3, i % 3);
   return sheet;
 }

@@ -19,9 +19,8 @@ struct SheetProposal {
 /// The sheet of paper in a photograph: the bright quadrilateral that fills a good part of it.
 SheetProposal propose_sheet(const cv::Mat& bgr);
 
-/// The picture seen straight on. Sides get their mean length in the photograph; a sheet within a tenth of the A series' ratio
-/// is made to have it.
-/// kInvalidArgument unless the corners are finite, convex, clockwise and span at least 16 px.
+/// The picture seen straight on. Sides get their mean length in the photograph; a sheet within a tenth of the A series'
+/// ratio is made to have it. kInvalidArgument unless the corners are finite, convex, clockwise and span at least 16 px.
 struct RectifiedSheet {
   cv::Mat bgr;
   SheetHomography homography;

@@ -87,11 +87,13 @@ Signs find_signs(const PaperView& view, const LayoutParams& params) {
   for (std::size_t c = 0; c < masks.size(); ++c) {
     for (const auto& f : figures_in(masks[c], std::max(4.0, 0.006 * side), 0.05 * side)) {
       const Point2 middle(f.box.x + 0.5 * (f.box.width - 1), f.box.y + 0.5 * (f.box.height - 1));
-      const double aspect = static_cast<double>(std::min(f.box.width, f.box.height)) / std::max(f.box.width, f.box.height);
+      const double aspect =
+          static_cast<double>(std::min(f.box.width, f.box.height)) / std::max(f.box.width, f.box.height);
       const int margin = std::max(2, static_cast<int>(0.12 * std::max(f.box.width, f.box.height)));
       const cv::Rect hidden(f.box.x - margin, f.box.y - margin, f.box.width + 2 * margin, f.box.height + 2 * margin);
       out.covered(hidden & cv::Rect(0, 0, out.covered.cols, out.covered.rows)).setTo(255);
-      const bool disc = std::string(kColours[c]) == "blue" && aspect > 0.8 && f.filled > 0.68 && f.filled < 0.86 && f.inked > 0.6;
+      const bool disc =
+          std::string(kColours[c]) == "blue" && aspect > 0.8 && f.filled > 0.68 && f.filled < 0.86 && f.inked > 0.6;
       if (disc && f.inked * aspect > roundest) roundest = f.inked * aspect, out.you_are_here_px = middle;
       LayoutSign sign;
       sign.p_px = middle;

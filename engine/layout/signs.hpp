@@ -17,8 +17,8 @@ struct Signs {
   cv::Mat covered;                        ///< CV_8UC1, 255 where a sign hides what is drawn below
 };
 
-/// Coloured figures of sign size (half to four percent of the long side), by class of colour. Routes, headers and tinted rooms
-/// are too large or too pale.
+/// Coloured figures of sign size (half to four percent of the long side), by class of colour. Routes, headers and
+/// tinted rooms are too large or too pale.
 Signs find_signs(const PaperView& view, const LayoutParams& params);
 
 }  // namespace smokemap

@@ -17,9 +17,7 @@ struct GraphStroke {
   std::vector<double> cuts;  ///< distances from axis.a
 };
 
-double confidence_of(const InkStroke& s) {
-  return std::clamp(s.coverage * std::min(1.0, 0.35 + s.darkness), 0.0, 1.0);
-}
+double confidence_of(const InkStroke& s) { return std::clamp(s.coverage * std::min(1.0, 0.35 + s.darkness), 0.0, 1.0); }
 
 /// How far beyond (or before) its end the stroke meets the other's line; the nearest one wins.
 Point2 snapped_end(const std::vector<InkStroke>& strokes, std::size_t self, bool at_b, double snap_px) {
@@ -46,7 +44,9 @@ Point2 snapped_end(const std::vector<InkStroke>& strokes, std::size_t self, bool
     } else {
       for (const Point2& other_end : {o.axis.a, o.axis.b}) {
         const double ahead = (other_end - end).dot(outward);
-        if (std::abs(ahead) > snap_px || std::abs(signed_line_distance(s.axis, other_end)) > 0.7 * std::max(s.thickness_px, o.thickness_px)) continue;
+        if (std::abs(ahead) > snap_px ||
+            std::abs(signed_line_distance(s.axis, other_end)) > 0.7 * std::max(s.thickness_px, o.thickness_px))
+          continue;
         const bool faces = (o.axis.midpoint() - other_end).dot(outward) > 0;
         const double cost = (other_end - end).norm() + snap_px * 0.5;
         if (faces && cost < best) best = cost, target = 0.5 * (other_end + end);
@@ -64,7 +64,8 @@ void cut_where_others_meet(std::vector<GraphStroke>& strokes) {
     for (std::size_t j = 0; j < strokes.size(); ++j) {
       if (i == j) continue;
       const auto& o = strokes[j];
-      if (const auto p = intersection(s.axis, o.axis); p && line_angle_between(s.axis.heading(), o.axis.heading()) > kCrossingAngle)
+      if (const auto p = intersection(s.axis, o.axis);
+          p && line_angle_between(s.axis.heading(), o.axis.heading()) > kCrossingAngle)
         s.cuts.push_back(along(s.axis, *p) * length);
       for (const Point2& end : {o.axis.a, o.axis.b})
         if (distance(s.axis, end) < 1.5) s.cuts.push_back(std::clamp(along(s.axis, end) * length, 0.0, length));

@@ -46,7 +46,8 @@ std::vector<Region> connected_regions(const std::vector<InkStroke>& strokes, dou
       if ((one.axis.midpoint() - two.axis.midpoint()).squaredNorm() > reach * reach) continue;
       const double gap = gap_between(one.axis, two.axis);
       const double turn = line_angle_between(one.axis.heading(), two.axis.heading());
-      if (gap <= touch && turn > radians(20) && std::min(one.length(), two.length()) > 0.015 * side_px) junctions[i] += 1;
+      if (gap <= touch && turn > radians(20) && std::min(one.length(), two.length()) > 0.015 * side_px)
+        junctions[i] += 1;
       const bool continues = turn < radians(5) && std::abs(signed_line_distance(one.axis, two.axis.midpoint())) < touch;
       if (gap <= touch || (continues && gap <= bridge_px)) groups.join(i, j);
     }
@@ -56,12 +57,14 @@ std::vector<Region> connected_regions(const std::vector<InkStroke>& strokes, dou
     region.members.push_back(i);
     if (strokes[i].length() > 0.015 * side_px) region.length += strokes[i].length();
     region.junctions += junctions[i];
-    for (const Point2& end : {strokes[i].axis.a, strokes[i].axis.b}) region.low = region.low.cwiseMin(end), region.high = region.high.cwiseMax(end);
+    for (const Point2& end : {strokes[i].axis.a, strokes[i].axis.b})
+      region.low = region.low.cwiseMin(end), region.high = region.high.cwiseMax(end);
   }
   std::vector<Region> regions;
   for (auto& region : by_root)
     if (!region.members.empty()) regions.push_back(std::move(region));
-  std::stable_sort(regions.begin(), regions.end(), [](const Region& a, const Region& b) { return a.score() > b.score(); });
+  std::stable_sort(regions.begin(), regions.end(),
+                   [](const Region& a, const Region& b) { return a.score() > b.score(); });
   return regions;
 }
 
@@ -110,7 +113,8 @@ std::vector<InkStroke> pick(const std::vector<InkStroke>& strokes, const std::ve
 }
 
 double total_length(const std::vector<InkStroke>& strokes) {
-  return std::accumulate(strokes.begin(), strokes.end(), 0.0, [](double sum, const InkStroke& s) { return sum + s.length(); });
+  return std::accumulate(strokes.begin(), strokes.end(), 0.0,
+                         [](double sum, const InkStroke& s) { return sum + s.length(); });
 }
 
 /// Short strokes that lie in the body of a longer one, a little askew: the rounded end of a wall, the foot of an arc.
@@ -133,9 +137,10 @@ std::vector<InkStroke> without_blocks(const std::vector<InkStroke>& strokes, dou
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     const auto& s = strokes[i];
     const bool carries_on = std::any_of(strokes.begin(), strokes.end(), [&](const InkStroke& o) {
-      return &o != &s && o.length() > 1.3 * o.thickness_px && line_angle_between(o.axis.heading(), s.axis.heading()) < radians(6) &&
-             std::abs(signed_line_distance(o.axis, s.axis.midpoint())) < 0.5 * o.thickness_px + 1 && gap_between(o.axis, s.axis) < reach_px &&
-             s.thickness_px < 1.6 * o.thickness_px;
+      return &o != &s && o.length() > 1.3 * o.thickness_px &&
+             line_angle_between(o.axis.heading(), s.axis.heading()) < radians(6) &&
+             std::abs(signed_line_distance(o.axis, s.axis.midpoint())) < 0.5 * o.thickness_px + 1 &&
+             gap_between(o.axis, s.axis) < reach_px && s.thickness_px < 1.6 * o.thickness_px;
     });
     if (s.length() >= 1.6 * s.thickness_px || (carries_on && s.length() >= 0.7 * s.thickness_px)) kept.push_back(s);
   }
@@ -150,11 +155,13 @@ bool could_be_a_wing(const std::vector<InkStroke>& walls, const Region& region, 
     thickness += walls[m].thickness_px * walls[m].length();
     length += walls[m].length();
   }
-  return longest > 0.05 * side_px && (region.junctions > static_cast<int>(region.members.size()) || thickness > 0.7 * thickness_px * length);
+  return longest > 0.05 * side_px &&
+         (region.junctions > static_cast<int>(region.members.size()) || thickness > 0.7 * thickness_px * length);
 }
 
 /// The best region and what lies near it: corridors and window bands part a building into pieces.
-std::vector<InkStroke> the_building(const std::vector<InkStroke>& walls, double thickness_px, double reach_px, double side_px) {
+std::vector<InkStroke> the_building(const std::vector<InkStroke>& walls, double thickness_px, double reach_px,
+                                    double side_px) {
   const auto regions = connected_regions(walls, reach_px, side_px);
   if (regions.empty()) return {};
   std::vector<bool> adopted(regions.size(), false);
@@ -169,7 +176,8 @@ std::vector<InkStroke> the_building(const std::vector<InkStroke>& walls, double 
       const bool grows = (new_high - new_low).prod() > 1.15 * (high - low).prod();
       if (grows && !could_be_a_wing(walls, regions[r], thickness_px, side_px)) continue;
       const bool near = std::any_of(regions[r].members.begin(), regions[r].members.end(), [&](std::size_t m) {
-        return std::any_of(building.begin(), building.end(), [&](const InkStroke& b) { return gap_between(walls[m].axis, b.axis) < reach_px; });
+        return std::any_of(building.begin(), building.end(),
+                           [&](const InkStroke& b) { return gap_between(walls[m].axis, b.axis) < reach_px; });
       });
       if (!near) continue;
       const auto more = pick(walls, regions[r].members);
@@ -197,7 +205,8 @@ std::vector<InkStroke> with_pairs_joined(const std::vector<InkStroke>& strokes, 
   std::vector<InkStroke> joined = pairs;
   for (const auto& s : strokes) {
     const bool half = std::any_of(pairs.begin(), pairs.end(), [&](const InkStroke& p) {
-      return line_angle_between(p.axis.heading(), s.axis.heading()) < radians(4) && distance(p.axis, s.axis.midpoint()) < 0.6 * p.thickness_px;
+      return line_angle_between(p.axis.heading(), s.axis.heading()) < radians(4) &&
+             distance(p.axis, s.axis.midpoint()) < 0.6 * p.thickness_px;
     });
     if (!half) joined.push_back(s);
   }
@@ -223,12 +232,14 @@ WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture
   for (const auto& s : plan)
     if (s.length() >= 2.5 * s.thickness_px) by_area.emplace_back(s.thickness_px, s.length() * s.thickness_px);
   out.thickness_px = weighted_quantile(by_area, 0.6);
-  out.thin_limit_px = valley(plan, 0.7 * params.thin_ratio * out.thickness_px, 1.1 * params.thin_ratio * out.thickness_px,
-                             0.9 * params.thin_ratio * out.thickness_px);
+  out.thin_limit_px = valley(plan, 0.7 * params.thin_ratio * out.thickness_px,
+                             1.1 * params.thin_ratio * out.thickness_px, 0.9 * params.thin_ratio * out.thickness_px);
   std::vector<InkStroke> thick;
   for (const auto& s : candidates) {
-    if (s.thickness_px < out.thin_limit_px) out.thin.push_back(s);
-    else if (s.thickness_px < 2.2 * out.thickness_px && s.coverage > 0.55) thick.push_back(s);
+    if (s.thickness_px < out.thin_limit_px)
+      out.thin.push_back(s);
+    else if (s.thickness_px < 2.2 * out.thickness_px && s.coverage > 0.55)
+      thick.push_back(s);
   }
   thick = without_blocks(without_echoes(thick), params.max_opening_share * side);
 

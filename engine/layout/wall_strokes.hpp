@@ -18,17 +18,17 @@ struct WallStrokes {
   int regions = 0;              ///< parts of the sheet that could be a plan; more than one deserves a warning
 };
 
-/// Chooses the plan among the drawings on the sheet (most junctions and wall length) and its thickness classes, which it reads
-/// from the histogram of thicknesses: the emptiest place below the main class parts walls from thin lines. Where no class
-/// stands out, pairs of parallel thin lines are the walls (hollow), else the single lines themselves.
+/// Chooses the plan among the drawings on the sheet (most junctions and wall length) and its thickness classes, which
+/// it reads from the histogram of thicknesses: the emptiest place below the main class parts walls from thin lines.
+/// Where no class stands out, pairs of parallel thin lines are the walls (hollow), else the single lines themselves.
 WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture, const LayoutParams& params);
 
-/// Pairs of parallel thin lines as one stroke each, as thick as both together. A line with like neighbours on both sides
-/// (stairs, hatching, shelves) makes no pair.
+/// Pairs of parallel thin lines as one stroke each, as thick as both together. A line with like neighbours on both
+/// sides (stairs, hatching, shelves) makes no pair.
 std::vector<InkStroke> pair_hollow(const std::vector<InkStroke>& thin, double max_spacing_px);
 
-/// Drops stairs, hatching and shelves: lines with like neighbours on both sides, evenly spaced at most `max_spacing_px` apart,
-/// and the outermost lines of such a row.
+/// Drops stairs, hatching and shelves: lines with like neighbours on both sides, evenly spaced at most `max_spacing_px`
+/// apart, and the outermost lines of such a row.
 std::vector<InkStroke> without_ladders(const std::vector<InkStroke>& strokes, double max_spacing_px);
 
 /// Strokes on one line, overlapping or less than `gap_px` apart, become one.

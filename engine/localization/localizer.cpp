@@ -18,9 +18,9 @@ constexpr double kBin_rad = 0.175;
 constexpr double kParticlesPerBin = 12;  ///< about what KLD asks for at 5 % error and 99 % confidence, per occupied bin
 constexpr double kRandomShare = 0.02;    ///< of the particles start anew when the walls do not explain what is seen
 constexpr double kScaleDrift = 0.005;
-constexpr double kExplained = 1.25;      ///< sigmas from a face within which a hit counts as explained
-constexpr double kForget = 0.3;          ///< weight of the newest scan in the running share of explained hits
-constexpr double kFar_m = 1.5;           ///< farther from any wall is all the same
+constexpr double kExplained = 1.25;  ///< sigmas from a face within which a hit counts as explained
+constexpr double kForget = 0.3;      ///< weight of the newest scan in the running share of explained hits
+constexpr double kFar_m = 1.5;       ///< farther from any wall is all the same
 
 struct Particle {
   Pose2 T_map_robot;
@@ -58,7 +58,7 @@ class Localizer::Impl {
 
   LocalizerParams params;
   std::mt19937_64 random;
-  DistanceMap walls;         ///< to the nearest face
+  DistanceMap walls;                                   ///< to the nearest face
   Point2 low = Point2::Zero(), high = Point2::Zero();  ///< box around the walls
   std::vector<Particle> particles;
   double explained = 0;
@@ -68,8 +68,8 @@ class Localizer::Impl {
 Particle Localizer::Impl::anywhere() {
   const Point2 size = high - low;
   Particle p;
-  p.T_map_robot = Pose2(low.x() + uniform01(random) * size.x(), low.y() + uniform01(random) * size.y(),
-                        uniform(random, -kPi, kPi));
+  p.T_map_robot =
+      Pose2(low.x() + uniform01(random) * size.x(), low.y() + uniform01(random) * size.y(), uniform(random, -kPi, kPi));
   p.log_scale = normal(random, params.scale_sigma);
   return p;
 }
@@ -77,13 +77,14 @@ Particle Localizer::Impl::anywhere() {
 /// Noise in the robot's own axes, in proportion to what it drove and turned.
 void Localizer::Impl::move(const Pose2& step) {
   const double sigma_m = params.sigma_move_share * step.translation().norm() + params.sigma_move_m;
-  const double sigma_rad = params.sigma_turn_share * std::abs(step.heading()) + params.sigma_turn_rad +
-                           0.02 * step.translation().norm();
+  const double sigma_rad =
+      params.sigma_turn_share * std::abs(step.heading()) + params.sigma_turn_rad + 0.02 * step.translation().norm();
   for (Particle& p : particles) {
     const Pose2 noisy(step.x() + normal(random, sigma_m), step.y() + normal(random, sigma_m),
                       step.heading() + normal(random, sigma_rad));
     p.T_map_robot = p.T_map_robot * noisy;
-    p.log_scale = std::clamp(p.log_scale + normal(random, kScaleDrift), -2.5 * params.scale_sigma, 2.5 * params.scale_sigma);
+    p.log_scale =
+        std::clamp(p.log_scale + normal(random, kScaleDrift), -2.5 * params.scale_sigma, 2.5 * params.scale_sigma);
   }
 }
 
@@ -119,9 +120,11 @@ void Localizer::Impl::weigh(const std::vector<Point2>& hits) {
 int Localizer::Impl::wanted_particles() const {
   std::set<std::tuple<int, int, int>> bins;
   for (const Particle& p : particles)
-    bins.insert({static_cast<int>(std::floor(p.T_map_robot.x() / kBin_m)), static_cast<int>(std::floor(p.T_map_robot.y() / kBin_m)),
+    bins.insert({static_cast<int>(std::floor(p.T_map_robot.x() / kBin_m)),
+                 static_cast<int>(std::floor(p.T_map_robot.y() / kBin_m)),
                  static_cast<int>(std::floor(p.T_map_robot.heading() / kBin_rad))});
-  return std::clamp(static_cast<int>(kParticlesPerBin * static_cast<double>(bins.size())), params.min_particles, params.max_particles);
+  return std::clamp(static_cast<int>(kParticlesPerBin * static_cast<double>(bins.size())), params.min_particles,
+                    params.max_particles);
 }
 
 /// Systematic, when the effective number has halved.
@@ -135,7 +138,8 @@ void Localizer::Impl::resample() {
   double at = uniform01(random) * stride, passed = 0;
   std::size_t i = 0;
   for (int k = 0; k < draw; ++k, at += stride) {
-    while (i + 1 < particles.size() && passed + std::exp(particles[i].log_weight) < at) passed += std::exp(particles[i++].log_weight);
+    while (i + 1 < particles.size() && passed + std::exp(particles[i].log_weight) < at)
+      passed += std::exp(particles[i++].log_weight);
     next.push_back(particles[i]);
     next.back().log_weight = 0;
   }
@@ -155,7 +159,8 @@ LocalizerEstimate Localizer::Impl::estimate() const {
   for (const Particle& p : particles) {
     const double w = std::exp(p.log_weight);
     sum += w;
-    mean += w * Eigen::Vector4d(p.T_map_robot.x(), p.T_map_robot.y(), std::cos(p.T_map_robot.heading()), std::sin(p.T_map_robot.heading()));
+    mean += w * Eigen::Vector4d(p.T_map_robot.x(), p.T_map_robot.y(), std::cos(p.T_map_robot.heading()),
+                                std::sin(p.T_map_robot.heading()));
   }
   mean /= sum;
   out.T_map_robot = Pose2(mean[0], mean[1], std::atan2(mean[3], mean[2]));
@@ -191,14 +196,16 @@ void Localizer::set_walls(const std::vector<LocalizerWall>& walls) {
   if (faces.empty()) return;
   impl_->low = impl_->high = faces.front().first;
   for (const EndPoints& f : faces)
-    for (const Point2& p : {f.first, f.second}) impl_->low = impl_->low.cwiseMin(p), impl_->high = impl_->high.cwiseMax(p);
+    for (const Point2& p : {f.first, f.second})
+      impl_->low = impl_->low.cwiseMin(p), impl_->high = impl_->high.cwiseMax(p);
 }
 
 void Localizer::start_at(const Pose2& T_map_robot, double sigma_m, double sigma_rad) {
   impl_->particles.clear();
   for (int i = 0; i < std::min(4 * impl_->params.min_particles, impl_->params.max_particles); ++i) {
     Particle p;
-    p.T_map_robot = T_map_robot * Pose2(normal(impl_->random, sigma_m), normal(impl_->random, sigma_m), normal(impl_->random, sigma_rad));
+    p.T_map_robot = T_map_robot * Pose2(normal(impl_->random, sigma_m), normal(impl_->random, sigma_m),
+                                        normal(impl_->random, sigma_rad));
     p.log_scale = normal(impl_->random, impl_->params.scale_sigma);
     impl_->particles.push_back(p);
   }

@@ -19,7 +19,8 @@ struct SensorMount {
 /// The fixed transforms of a robot as ROS publishes them on tf_static: each frame has one parent.
 class FrameTree {
  public:
-  /// Adds or replaces the pose of `child` in `parent`. Ignored (false) unless finite with a unit-length rotation (within 1 %).
+  /// Adds or replaces the pose of `child` in `parent`. Ignored (false) unless finite with a unit-length rotation
+  /// (within 1 %).
   bool set(const std::string& parent, const std::string& child, const Eigen::Vector3d& translation,
            const Eigen::Quaterniond& rotation);
 

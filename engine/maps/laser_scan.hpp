@@ -31,8 +31,8 @@ struct LaserScan {
   double time_increment_s = 0;  ///< between beams; 0 = all at once
   double range_min_m = 0;
   double range_max_m = 0;
-  std::vector<float> ranges_m;      ///< as received
-  std::vector<float> intensities;   ///< empty or one a beam
+  std::vector<float> ranges_m;     ///< as received
+  std::vector<float> intensities;  ///< empty or one a beam
   Pose2 T_robot_laser;
 };
 

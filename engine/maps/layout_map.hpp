@@ -23,8 +23,8 @@ struct LayoutWall {
   int corner_a = 0;  ///< index into corners
   int corner_b = 0;
   double thickness_px = 0;
-  double confidence = 1;  ///< 0..1: how sure the reader is that this stroke is a wall
-  bool by_person = false; ///< drawn, or switched on, by somebody
+  double confidence = 1;   ///< 0..1: how sure the reader is that this stroke is a wall
+  bool by_person = false;  ///< drawn, or switched on, by somebody
 };
 
 enum class OpeningKind { kDoor, kWindow, kPassage };

@@ -42,7 +42,7 @@ struct MapLink {
 
 /// Does this plan fit this building at all?
 struct PlanFit {
-  double score = 0;  ///< 0..1: share of the sensed wall length that the plan explains
+  double score = 0;                 ///< 0..1: share of the sensed wall length that the plan explains
   std::string verdict = "unknown";  ///< "fits", "doubtful", "does not fit", "unknown"
 };
 

@@ -18,8 +18,8 @@ RadarRow radar_row(std::span<const float> rows, int width, int row) {
 
 Result<Ok> check_rows(std::span<const float> rows, int height, int width) {
   if (height < 2 || height > kMostRadarAzimuths || width <= kRadarRowHeader || width > kMostRadarBins + kRadarRowHeader)
-    return fail(Errc::kCorrupt, "a picture of " + std::to_string(width) + " x " + std::to_string(height) +
-                                    " is no radar sweep");
+    return fail(Errc::kCorrupt,
+                "a picture of " + std::to_string(width) + " x " + std::to_string(height) + " is no radar sweep");
   if (rows.size() != static_cast<std::size_t>(height) * static_cast<std::size_t>(width))
     return fail(Errc::kCorrupt, "radar picture of another length than its size says");
   return Ok{};

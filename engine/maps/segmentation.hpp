@@ -26,13 +26,13 @@ struct Region {
 struct RegionBorder {
   int label_a = 0;
   int label_b = 0;
-  Segment2 line_px;   ///< straight boundary
+  Segment2 line_px;  ///< straight boundary
   double width_px = 0;
 };
 
 /// Free space split into regions. Pixels as in the picture given (y down).
 struct Segmentation {
-  cv::Mat labels;  ///< CV_16UC1; 0 = not free, otherwise Region::label
+  cv::Mat labels;               ///< CV_16UC1; 0 = not free, otherwise Region::label
   std::vector<Region> regions;  ///< descending area; regions[i].label == i + 1
   std::vector<RegionBorder> borders;
 };

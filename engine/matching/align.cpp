@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::array kScales = {0.65, 0.75, 0.87, 1.0, 1.15};  ///< times the root of the ratio of areas
 constexpr std::array kStretches = {0.72, 1.0, 1.39};           ///< along over across the walls
-constexpr double kPinSigma_cells = 4;    ///< how far a good alignment of bent maps may leave a pin
-constexpr double kPinWeight = 0.06;      ///< score lost at one sigma
-constexpr double kPinCap = 9;            ///< in squared sigmas: one wrong pin must not rule out everything
+constexpr double kPinSigma_cells = 4;  ///< how far a good alignment of bent maps may leave a pin
+constexpr double kPinWeight = 0.06;    ///< score lost at one sigma
+constexpr double kPinCap = 9;          ///< in squared sigmas: one wrong pin must not rule out everything
 
 /// Shift that brings each pin of a, already turned and scaled, onto its partner.
 std::vector<Point2> pin_shifts(const Eigen::Affine2d& turned, const MapRaster& a, const MapRaster& b,
@@ -88,7 +88,8 @@ Eigen::Matrix2d rotation(double angle_rad) { return Eigen::Rotation2Dd(angle_rad
 /// Mean distance between where two alignments put the corners of a.
 double difference(const MapAlignment& one, const MapAlignment& two, const MapRaster& a) {
   double sum = 0;
-  for (const Point2& corner : {Point2(0, 0), Point2(a.depth.cols, 0), Point2(0, a.depth.rows), Point2(a.depth.cols, a.depth.rows)})
+  for (const Point2& corner :
+       {Point2(0, 0), Point2(a.depth.cols, 0), Point2(0, a.depth.rows), Point2(a.depth.cols, a.depth.rows)})
     sum += (one.cells_b_a * corner - two.cells_b_a * corner).norm();
   return sum / 4;
 }
@@ -96,7 +97,7 @@ double difference(const MapAlignment& one, const MapAlignment& two, const MapRas
 }  // namespace
 
 std::vector<MapAlignment> find_alignments(const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins,
-                                       bool allow_mirror, int count) {
+                                          bool allow_mirror, int count) {
   const ShiftSearch search(b);
   const double scale = std::sqrt(b.free_cells / std::max(1.0, a.free_cells));
   std::vector<MapAlignment> all;
@@ -116,7 +117,8 @@ std::vector<MapAlignment> find_alignments(const MapRaster& a, const MapRaster& b
         }
       all.insert(all.end(), turned.begin(), turned.end());
     }
-  std::stable_sort(all.begin(), all.end(), [](const MapAlignment& one, const MapAlignment& two) { return one.score > two.score; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const MapAlignment& one, const MapAlignment& two) { return one.score > two.score; });
   std::vector<MapAlignment> chosen;
   const double apart = 0.08 * std::max(b.depth.cols, b.depth.rows);
   for (const MapAlignment& candidate : all) {

@@ -18,6 +18,6 @@ struct MapAlignment {
 /// quarter turns (eight with mirror images), a range of scales along both wall directions and all shifts are compared.
 /// Cost: one Fourier transform a candidate, 15..30 ms altogether.
 std::vector<MapAlignment> find_alignments(const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins,
-                                       bool allow_mirror, int count);
+                                          bool allow_mirror, int count);
 
 }  // namespace smokemap

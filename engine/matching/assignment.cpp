@@ -6,8 +6,8 @@
 namespace smokemap {
 namespace {
 
-/// Augments a partial assignment by one row along the cheapest path. `column_of`-style arrays are 1-based; column 0 is the
-/// place from which the new row enters.
+/// Augments a partial assignment by one row along the cheapest path. `column_of`-style arrays are 1-based; column 0 is
+/// the place from which the new row enters.
 class PathSolver {
  public:
   explicit PathSolver(const Eigen::MatrixXd& cost)
@@ -25,7 +25,9 @@ class PathSolver {
   }
 
  private:
-  static size_t at(const std::vector<int>& values, int i) { return static_cast<size_t>(values[static_cast<size_t>(i)]); }
+  static size_t at(const std::vector<int>& values, int i) {
+    return static_cast<size_t>(values[static_cast<size_t>(i)]);
+  }
 
   void enter(int row) {
     const double infinite = std::numeric_limits<double>::infinity();

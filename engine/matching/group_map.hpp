@@ -12,10 +12,10 @@ namespace smokemap {
 /// The pixels of one side of a group, in a frame whose axes run along the walls.
 struct GroupSide {
   Eigen::Matrix2d frame = Eigen::Matrix2d::Identity();  ///< picture -> wall axes (turn or mirrored turn)
-  Point2 low = Point2::Zero();   ///< box in wall axes
+  Point2 low = Point2::Zero();                          ///< box in wall axes
   Point2 high = Point2::Zero();
   double area_px = 0;
-  std::vector<cv::Point> rim;    ///< pixels beside others or walls: where a point outside is put
+  std::vector<cv::Point> rim;  ///< pixels beside others or walls: where a point outside is put
 
   double diagonal() const { return (high - low).norm(); }
 };

@@ -1,7 +1,8 @@
-// Matching in three steps. Coarse: every sensible turn, scale and shift of map a over map b, compared as depth images (how
-// far inside or outside free space). Fine: the best few are bent until walls meet, which shows how well each explains the
-// other map. Regions: under each bent map, regions are assigned to regions by place, size and neighbours. The best
-// hypothesis is the answer, the next different one the runner-up, and what separates the two is what to ask a person.
+// Matching in three steps. Coarse: every sensible turn, scale and shift of map a over map b, compared as depth images
+// (how far inside or outside free space). Fine: the best few are bent until walls meet, which shows how well each
+// explains the other map. Regions: under each bent map, regions are assigned to regions by place, size and neighbours.
+// The best hypothesis is the answer, the next different one the runner-up, and what separates the two is what to ask a
+// person.
 #include "matching/match.hpp"
 
 #include <Eigen/SVD>
@@ -25,7 +26,7 @@ constexpr int kFine_cells = 72;
 constexpr double kCoarseSlope_cells = 3;
 constexpr double kFineSlope_cells = 4;
 constexpr double kPinReach_px = 10;
-constexpr double kClearMargin = 0.25;     ///< from here on the runner-up does not matter
+constexpr double kClearMargin = 0.25;  ///< from here on the runner-up does not matter
 constexpr double kDoubtfulMargin = 0.08;
 constexpr double kDoubtfulLikeness = 0.55;
 
@@ -123,7 +124,8 @@ std::vector<Hypothesis> hypotheses(const Segmentation& a, const Segmentation& b,
     hypothesis.score = hypothesis.warp.score + 0.5 * explained(a, hypothesis.pairs) + 0.5 * (coarse.score - 1);
     all.push_back(std::move(hypothesis));
   }
-  std::stable_sort(all.begin(), all.end(), [](const Hypothesis& one, const Hypothesis& two) { return one.score > two.score; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Hypothesis& one, const Hypothesis& two) { return one.score > two.score; });
   return all;
 }
 
@@ -178,7 +180,8 @@ void finish(const Segmentation& a, const PairRules& rules, const std::vector<Reg
     pair.confidence = rules.forced(i, j) ? 0.97 : std::clamp(trust * pair.confidence, 0.02, 0.95);
   }
   for (const RegionPair& verdict : verdicts) {
-    if (verdict.verdict == Verdict::kRejected) matching.pairs.push_back({verdict.label_a, verdict.label_b, 0, Verdict::kRejected});
+    if (verdict.verdict == Verdict::kRejected)
+      matching.pairs.push_back({verdict.label_a, verdict.label_b, 0, Verdict::kRejected});
     for (RegionPair& pair : matching.pairs)
       if (verdict.verdict == Verdict::kConfirmed && pair.label_a == verdict.label_a && pair.label_b == verdict.label_b)
         pair.confidence = 1, pair.verdict = Verdict::kConfirmed;
@@ -199,7 +202,8 @@ Result<Matching> match(const Segmentation& a, const Segmentation& b, const std::
                        const std::vector<RegionPair>& verdicts, const MatchParams& params) {
   if (const Result<Ok> valid = params.validate(); !valid) return valid.error();
   if (a.regions.empty() || b.regions.empty())
-    return fail(Errc::kDegenerate, std::string("the ") + (a.regions.empty() ? "first" : "second") + " map has no region to match");
+    return fail(Errc::kDegenerate,
+                std::string("the ") + (a.regions.empty() ? "first" : "second") + " map has no region to match");
   const Result<PairRules> rules = make_rules(a, b, pins, verdicts);
   if (!rules) return rules.error();
   std::vector<Hypothesis> all = hypotheses(a, b, pins_and_confirmed(a, b, pins, verdicts), *rules, params);

@@ -10,8 +10,8 @@ namespace smokemap {
 
 /// A map shrunk to a few thousand cells, which is all that a hand-drawn map can say, with what alignment needs.
 struct MapRaster {
-  cv::Mat labels;        ///< CV_16UC1: the region of each cell's centre, 0 = none; a margin of empty cells all around
-  cv::Mat depth;         ///< CV_32FC1: 0 well outside, 1 on a wall, 2 well inside free space, linear between
+  cv::Mat labels;  ///< CV_16UC1: the region of each cell's centre, 0 = none; a margin of empty cells all around
+  cv::Mat depth;   ///< CV_32FC1: 0 well outside, 1 on a wall, 2 well inside free space, linear between
   double px_per_cell = 1;
   Point2 origin_px = Point2::Zero();  ///< picture point of the centre of cell (0, 0)
   double wall_direction_rad = 0;      ///< of most walls, modulo 90 degrees, in [0, pi/2); picture axes (y down)

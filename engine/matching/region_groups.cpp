@@ -32,7 +32,8 @@ std::vector<RegionGroup> group_pairs(const std::vector<RegionPair>& pairs) {
       std::sort(labels->begin(), labels->end());
       labels->erase(std::unique(labels->begin(), labels->end()), labels->end());
     }
-  std::sort(groups.begin(), groups.end(), [](const RegionGroup& one, const RegionGroup& two) { return one.labels_a < two.labels_a; });
+  std::sort(groups.begin(), groups.end(),
+            [](const RegionGroup& one, const RegionGroup& two) { return one.labels_a < two.labels_a; });
   return groups;
 }
 

@@ -7,7 +7,8 @@
 
 namespace smokemap {
 
-/// Regions of both maps that are one place together: one to one mostly, several where a map splits what the other does not.
+/// Regions of both maps that are one place together: one to one mostly, several where a map splits what the other does
+/// not.
 struct RegionGroup {
   std::vector<int> labels_a;  ///< sorted
   std::vector<int> labels_b;  ///< sorted

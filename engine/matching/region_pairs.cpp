@@ -9,8 +9,8 @@
 namespace smokemap {
 namespace {
 
-constexpr double kLeastLikeness = 0.12;   ///< below this a region rather has no partner
-constexpr double kLeastInside = 0.6;      ///< share of a left-over region that must lie in another's partner
+constexpr double kLeastLikeness = 0.12;  ///< below this a region rather has no partner
+constexpr double kLeastInside = 0.6;     ///< share of a left-over region that must lie in another's partner
 constexpr double kNeighbourWeight = 0.3;
 constexpr int kNeighbourRounds = 3;
 
@@ -29,18 +29,20 @@ std::vector<std::vector<int>> neighbours(const Segmentation& map) {
 }
 
 struct Landing {
-  Eigen::MatrixXd overlap;   ///< cells of a
-  Eigen::VectorXd area_a;    ///< cells of a
-  Eigen::VectorXd area_b;    ///< cells of b
-  Eigen::MatrixX2d centre_a; ///< in cells of b, after warping
-  Eigen::MatrixX2d centre_b; ///< in cells of b
+  Eigen::MatrixXd overlap;    ///< cells of a
+  Eigen::VectorXd area_a;     ///< cells of a
+  Eigen::VectorXd area_b;     ///< cells of b
+  Eigen::MatrixX2d centre_a;  ///< in cells of b, after warping
+  Eigen::MatrixX2d centre_b;  ///< in cells of b
 };
 
 Landing land(const Segmentation& a, const Segmentation& b, const MapRaster& raster_a, const MapRaster& raster_b,
              const Warp& warp) {
-  const auto count_a = static_cast<Eigen::Index>(a.regions.size()), count_b = static_cast<Eigen::Index>(b.regions.size());
-  Landing landing{Eigen::MatrixXd::Zero(count_a, count_b), Eigen::VectorXd::Zero(count_a), Eigen::VectorXd::Zero(count_b),
-                  Eigen::MatrixX2d::Zero(count_a, 2), Eigen::MatrixX2d::Zero(count_b, 2)};
+  const auto count_a = static_cast<Eigen::Index>(a.regions.size()),
+             count_b = static_cast<Eigen::Index>(b.regions.size());
+  Landing landing{Eigen::MatrixXd::Zero(count_a, count_b), Eigen::VectorXd::Zero(count_a),
+                  Eigen::VectorXd::Zero(count_b), Eigen::MatrixX2d::Zero(count_a, 2),
+                  Eigen::MatrixX2d::Zero(count_b, 2)};
   for (int y = 0; y < raster_a.labels.rows; ++y)
     for (int x = 0; x < raster_a.labels.cols; ++x) {
       const int i = raster_a.labels.at<unsigned short>(y, x) - 1;
@@ -79,7 +81,8 @@ Landing land(const Segmentation& a, const Segmentation& b, const MapRaster& rast
 }
 
 /// How well the neighbours of a pair agree with it: the share of them that find a partner beside the partner.
-double neighbour_support(const std::vector<int>& of_i, const std::vector<int>& of_j, int j, const Eigen::MatrixXd& likeness) {
+double neighbour_support(const std::vector<int>& of_i, const std::vector<int>& of_j, int j,
+                         const Eigen::MatrixXd& likeness) {
   if (of_i.empty() || of_j.empty()) return 0.5;
   double sum = 0;
   for (const int k : of_i) {
@@ -92,8 +95,8 @@ double neighbour_support(const std::vector<int>& of_i, const std::vector<int>& o
 
 }  // namespace
 
-PairScores score_pairs(const Segmentation& a, const Segmentation& b, const MapRaster& raster_a, const MapRaster& raster_b,
-                       const Warp& warp, const PairRules& rules) {
+PairScores score_pairs(const Segmentation& a, const Segmentation& b, const MapRaster& raster_a,
+                       const MapRaster& raster_b, const Warp& warp, const PairRules& rules) {
   const Landing landing = land(a, b, raster_a, raster_b, warp);
   const double density = raster_b.free_cells / std::max(1.0, raster_a.free_cells);
   const Eigen::Index count_a = landing.overlap.rows(), count_b = landing.overlap.cols();
@@ -120,8 +123,10 @@ PairScores score_pairs(const Segmentation& a, const Segmentation& b, const MapRa
     for (int i = 0; i < count_a; ++i)
       for (int j = 0; j < count_b; ++j) {
         if (alone(i, j) < 0.02) continue;
-        const double support = 0.5 * (neighbour_support(beside_a[static_cast<size_t>(i)], beside_b[static_cast<size_t>(j)], j, before) +
-                                      neighbour_support(beside_b[static_cast<size_t>(j)], beside_a[static_cast<size_t>(i)], i, before.transpose()));
+        const double support =
+            0.5 * (neighbour_support(beside_a[static_cast<size_t>(i)], beside_b[static_cast<size_t>(j)], j, before) +
+                   neighbour_support(beside_b[static_cast<size_t>(j)], beside_a[static_cast<size_t>(i)], i,
+                                     before.transpose()));
         scores.likeness(i, j) = alone(i, j) * (1 - kNeighbourWeight + kNeighbourWeight * 1.5 * support);
         scores.likeness(i, j) = std::min(1.0, scores.likeness(i, j));
       }
@@ -140,7 +145,8 @@ std::vector<RegionPair> choose_pairs(const PairScores& scores, const PairRules& 
   const std::vector<int> partner = best_assignment(gain);
   Eigen::MatrixXd paired = Eigen::MatrixXd::Zero(gain.rows(), gain.cols());
   for (size_t i = 0; i < partner.size(); ++i)
-    if (partner[i] >= 0) paired(static_cast<Eigen::Index>(i), partner[i]) = likeness(static_cast<Eigen::Index>(i), partner[i]);
+    if (partner[i] >= 0)
+      paired(static_cast<Eigen::Index>(i), partner[i]) = likeness(static_cast<Eigen::Index>(i), partner[i]);
   const Eigen::MatrixXd one_to_one = paired;
   for (Eigen::Index i = 0; i < gain.rows(); ++i)
     for (Eigen::Index j = 0; j < gain.cols(); ++j) {
@@ -149,7 +155,8 @@ std::vector<RegionPair> choose_pairs(const PairScores& scores, const PairRules& 
       const bool a_is_free = one_to_one.row(i).maxCoeff() <= 0, b_is_free = one_to_one.col(j).maxCoeff() <= 0;
       const bool joins = (a_is_free && scores.share_of_a(i, j) >= kLeastInside) ||
                          (b_is_free && scores.share_of_b(i, j) >= kLeastInside);
-      if (joins) paired(i, j) = std::max(paired(i, j), 0.6 * std::max(scores.share_of_a(i, j), scores.share_of_b(i, j)));
+      if (joins)
+        paired(i, j) = std::max(paired(i, j), 0.6 * std::max(scores.share_of_a(i, j), scores.share_of_b(i, j)));
     }
   std::vector<RegionPair> pairs;
   for (int i = 0; i < gain.rows(); ++i)

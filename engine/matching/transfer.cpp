@@ -88,9 +88,10 @@ struct Direction {
       if (there != group_of_to.end() && there->second == group) return p;
     }
     const std::vector<cv::Point>& rim = rims[static_cast<size_t>(group)];
-    const cv::Point nearest = *std::min_element(rim.begin(), rim.end(), [&](const cv::Point& one, const cv::Point& two) {
-      return (Point2(one.x, one.y) - p).squaredNorm() < (Point2(two.x, two.y) - p).squaredNorm();
-    });
+    const cv::Point nearest =
+        *std::min_element(rim.begin(), rim.end(), [&](const cv::Point& one, const cv::Point& two) {
+          return (Point2(one.x, one.y) - p).squaredNorm() < (Point2(two.x, two.y) - p).squaredNorm();
+        });
     return Point2(nearest.x, nearest.y);
   }
 };
@@ -147,7 +148,8 @@ PointTransfer::PointTransfer(const Segmentation& a, const Segmentation& b, const
     Point2 p_a = pin.p_a_px, p_b = pin.p_b_px;
     const auto group_a = forward.group_of_from.find(label_at(a.labels, p_a));
     const auto group_b = forward.group_of_to.find(label_at(b.labels, p_b));
-    if (group_a != forward.group_of_from.end() && group_b != forward.group_of_to.end() && group_a->second == group_b->second)
+    if (group_a != forward.group_of_from.end() && group_b != forward.group_of_to.end() &&
+        group_a->second == group_b->second)
       handles[static_cast<size_t>(group_a->second)].push_back({p_a, p_b, true});
   }
   backward.group_of_from = forward.group_of_to;

@@ -16,8 +16,8 @@ struct Warp {
   double score = 0;     ///< likeness less bending and pin misses; what hypotheses are compared by
 };
 
-/// Bends an alignment (Thirion's demons on depth images: each wall moves down the slope of the other map's depth, and the
-/// field of moves is smoothed, first widely, then less). Pins are met.
+/// Bends an alignment (Thirion's demons on depth images: each wall moves down the slope of the other map's depth, and
+/// the field of moves is smoothed, first widely, then less). Pins are met.
 Warp bend(const MapAlignment& alignment, const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins);
 
 }  // namespace smokemap

@@ -15,7 +15,8 @@ constexpr double kHalfGapM = 2.5;
 /// Draws in cells: row = cell y.
 class Canvas {
  public:
-  explicit Canvas(const GridFrame& frame) : frame_(frame), mat_(frame.height_cells, frame.width_cells, CV_8UC1, cv::Scalar(0)) {}
+  explicit Canvas(const GridFrame& frame)
+      : frame_(frame), mat_(frame.height_cells, frame.width_cells, CV_8UC1, cv::Scalar(0)) {}
   void line(const Segment2& segment, int value) {
     const Cell a = frame_.cell_of(segment.a), b = frame_.cell_of(segment.b);
     cv::line(mat_, {a.x, a.y}, {b.x, b.y}, cv::Scalar(value), 1, cv::LINE_8);
@@ -50,7 +51,8 @@ std::vector<Segment2> openings_map(const MergedMap& merged, const LayoutMap& lay
   std::vector<Segment2> gaps;
   const PixelFrame frame = layout.frame();
   for (const LayoutOpening& opening : layout.openings)
-    gaps.push_back({merged.layout_to_map(frame.to_metres(opening.gap_px.a)), merged.layout_to_map(frame.to_metres(opening.gap_px.b))});
+    gaps.push_back({merged.layout_to_map(frame.to_metres(opening.gap_px.a)),
+                    merged.layout_to_map(frame.to_metres(opening.gap_px.b))});
   return gaps;
 }
 
@@ -77,8 +79,8 @@ cv::Mat grown(const cv::Mat& set, double radius_cells) {
   return cells <= radius_cells;
 }
 
-/// Inside the building as drawn: what a flood from outside does not reach when gaps in the outer walls up to five metres (exits,
-/// windows and walls that the reader missed) are thought closed; where that leaks too, the convex hull.
+/// Inside the building as drawn: what a flood from outside does not reach when gaps in the outer walls up to five
+/// metres (exits, windows and walls that the reader missed) are thought closed; where that leaks too, the convex hull.
 cv::Mat inside_of_plan(const MergedMap& merged, const LayoutMap& layout, const GridFrame& frame) {
   Canvas shell(frame);
   for (const MergedWall& wall : merged.walls)
@@ -101,8 +103,10 @@ void paint_sensed(const OccupancyGrid& sensed, const GridFrame& frame, std::vect
       const Cell target = frame.cell_of(from.center_of(cell));
       if (!frame.contains(target)) continue;
       Ground& g = ground[frame.index(target)];
-      if (percent >= kOccupiedPercent) g = Ground::kBlocked;
-      else if (percent <= kFreePercent && g != Ground::kBlocked) g = Ground::kFree;
+      if (percent >= kOccupiedPercent)
+        g = Ground::kBlocked;
+      else if (percent <= kFreePercent && g != Ground::kBlocked)
+        g = Ground::kFree;
     }
 }
 
@@ -134,7 +138,8 @@ CostMap::CostMap(const GridFrame& frame, std::vector<Ground> ground, const CostM
   cv::Mat cells;
   cv::distanceTransform(open, cells, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   const auto* distance = cells.ptr<float>();
-  const auto most = static_cast<float>(std::hypot(frame.width_cells, frame.height_cells));  // without any wall: no limit
+  const auto most =
+      static_cast<float>(std::hypot(frame.width_cells, frame.height_cells));  // without any wall: no limit
   for (std::size_t i = 0; i < ground_.size(); ++i)
     clearance_m_[i] = std::min(distance[i], most) * static_cast<float>(frame.resolution_m);
 }

@@ -21,9 +21,9 @@ enum class Ground : std::uint8_t {
 struct CostMapParams {
   double resolution_m = 0.10;
   double robot_radius_m = 0.25;
-  double soft_clearance_m = 0.40;   ///< beyond the radius: nearer to walls costs more
-  double planned_penalty = 1.5;     ///< a metre through rooms nobody saw costs this much more than a metre seen
-  double margin_m = 3.0;            ///< around everything known
+  double soft_clearance_m = 0.40;  ///< beyond the radius: nearer to walls costs more
+  double planned_penalty = 1.5;    ///< a metre through rooms nobody saw costs this much more than a metre seen
+  double margin_m = 3.0;           ///< around everything known
   Result<Ok> validate() const;
 };
 
@@ -36,7 +36,9 @@ class CostMap {
   const CostMapParams& params() const { return params_; }
   Ground ground(Cell cell) const { return frame_.contains(cell) ? ground_[frame_.index(cell)] : Ground::kUnknown; }
   /// Distance to the nearest blocked cell; 0 in it.
-  double clearance_m(Cell cell) const { return frame_.contains(cell) ? static_cast<double>(clearance_m_[frame_.index(cell)]) : 0.0; }
+  double clearance_m(Cell cell) const {
+    return frame_.contains(cell) ? static_cast<double>(clearance_m_[frame_.index(cell)]) : 0.0;
+  }
   /// Seen free or planned, with room for the robot's radius.
   bool drivable(Cell cell) const;
   /// Cost of a metre here, at least 1.

@@ -18,17 +18,17 @@ struct FollowerParams {
   double max_speed_mps = 0.5;
   double max_turn_rate_radps = 1.0;
   double lookahead_m = 0.5;
-  double turn_in_place_rad = 0.9;     ///< heading errors above are turned off on the spot
+  double turn_in_place_rad = 0.9;  ///< heading errors above are turned off on the spot
   double robot_radius_m = 0.25;
-  double stop_time_s = 0.6;           ///< what lies closer ahead than this at full speed stops the robot
-  int stop_points = 3;                ///< so many echoes are an obstacle, fewer are noise
+  double stop_time_s = 0.6;  ///< what lies closer ahead than this at full speed stops the robot
+  int stop_points = 3;       ///< so many echoes are an obstacle, fewer are noise
   Result<Ok> validate() const;
 };
 
 /// Where along the path the robot is.
 struct PathProgress {
-  std::size_t piece = 0;    ///< points[piece] -> points[piece + 1]
-  double remaining_m = 0;   ///< to the end
+  std::size_t piece = 0;   ///< points[piece] -> points[piece + 1]
+  double remaining_m = 0;  ///< to the end
   double off_path_m = 0;
 };
 PathProgress progress_on(const Path& path, const Point2& p);

@@ -68,7 +68,8 @@ std::optional<Frontier> best_frontier(const CostMap& map, const Point2& start, c
   std::vector<bool> border(frame.cell_count(), false);
   Cell cell;
   for (cell.y = 0; cell.y < frame.height_cells; ++cell.y)
-    for (cell.x = 0; cell.x < frame.width_cells; ++cell.x) border[frame.index(cell)] = is_border(map, cell, cost, has_plan);
+    for (cell.x = 0; cell.x < frame.width_cells; ++cell.x)
+      border[frame.index(cell)] = is_border(map, cell, cost, has_plan);
   std::optional<Frontier> best;
   double best_score = std::numeric_limits<double>::infinity();
   for (cell.y = 0; cell.y < frame.height_cells; ++cell.y)

@@ -53,8 +53,10 @@ bool ObstacleWatch::is_solid(const Point2& p_odom) const {
     const double window = std::min(0.5, std::atan2(params_.half_width_m, away));
     for (const Beam& beam : look.beams) {
       if (beam.range_m <= 0 || std::abs(wrap_angle(beam.angle_rad - angle)) > window) continue;
-      if (beam.range_m > away + params_.behind_m) ++through;
-      else if (beam.range_m > away - params_.behind_m) beam.echo ? ++ended : ++through;  // smoke: the radar went on
+      if (beam.range_m > away + params_.behind_m)
+        ++through;
+      else if (beam.range_m > away - params_.behind_m)
+        beam.echo ? ++ended : ++through;  // smoke: the radar went on
     }
   }
   return ended > 0 && through <= params_.most_through * (through + ended);
@@ -67,7 +69,8 @@ std::vector<Point2> ObstacleWatch::obstacles_robot() const {
   const Pose2 T_robot_odom = T_odom_robot_.inverse();
   for (const Beam& beam : now.beams) {
     if (!beam.echo || beam.range_m > params_.near_m) continue;
-    const Point2 p_odom = now.T_odom_laser * Point2(beam.range_m * std::cos(beam.angle_rad), beam.range_m * std::sin(beam.angle_rad));
+    const Point2 p_odom =
+        now.T_odom_laser * Point2(beam.range_m * std::cos(beam.angle_rad), beam.range_m * std::sin(beam.angle_rad));
     if (is_solid(p_odom)) obstacles.push_back(T_robot_odom * p_odom);
   }
   return obstacles;

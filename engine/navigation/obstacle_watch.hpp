@@ -11,17 +11,17 @@
 namespace smokemap {
 
 struct ObstacleParams {
-  double near_m = 1.2;            ///< what is farther away stops nobody yet
-  double half_width_m = 0.03;     ///< beams that pass this near to an echo judge it
-  double behind_m = 0.10;         ///< a beam that goes on this far past the place went through it
-  double most_through = 0.30;     ///< share of beams that may pass through an obstacle (edges, glass)
-  int scans = 6;                  ///< looked back on
-  double sweep_valid_s = 1.5;     ///< an older radar turn says nothing about smoke now
+  double near_m = 1.2;         ///< what is farther away stops nobody yet
+  double half_width_m = 0.03;  ///< beams that pass this near to an echo judge it
+  double behind_m = 0.10;      ///< a beam that goes on this far past the place went through it
+  double most_through = 0.30;  ///< share of beams that may pass through an obstacle (edges, glass)
+  int scans = 6;               ///< looked back on
+  double sweep_valid_s = 1.5;  ///< an older radar turn says nothing about smoke now
   Result<Ok> validate() const;
 };
 
-/// Tells obstacles from smoke for the reflex stop: an echo is an obstacle when the beams of the last scans end there, and smoke
-/// when beams keep going through the place, or the radar does. One robot; no clock.
+/// Tells obstacles from smoke for the reflex stop: an echo is an obstacle when the beams of the last scans end there,
+/// and smoke when beams keep going through the place, or the radar does. One robot; no clock.
 class ObstacleWatch {
  public:
   explicit ObstacleWatch(const ObstacleParams& params = {}) : params_(params) {}

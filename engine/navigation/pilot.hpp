@@ -11,21 +11,21 @@
 namespace smokemap {
 
 enum class PilotState {
-  kIdle,      ///< no target
+  kIdle,  ///< no target
   kDriving,
   kArrived,
-  kBlocked,   ///< something stands in the way; trying again
-  kGivenUp,   ///< no way for longer than patience_s; see `reason`
+  kBlocked,  ///< something stands in the way; trying again
+  kGivenUp,  ///< no way for longer than patience_s; see `reason`
 };
 
 struct PilotParams {
   FollowerParams follower;
   PlannerParams planner;
   double arrival_m = 0.30;
-  double arrival_rad = 0.2;        ///< only where a heading was asked for
+  double arrival_rad = 0.2;  ///< only where a heading was asked for
   double replan_period_s = 1.0;
-  double patience_s = 12.0;        ///< without progress
-  double back_up_after_s = 3.0;    ///< of being blocked
+  double patience_s = 12.0;      ///< without progress
+  double back_up_after_s = 3.0;  ///< of being blocked
   double back_up_speed_mps = 0.15;
   Result<Ok> validate() const;
 };
@@ -38,8 +38,8 @@ struct PilotOutput {
   double remaining_m = 0;
 };
 
-/// Drives one robot to a target over a map that keeps changing: plans, follows, stops for what the robot's own sensor sees,
-/// backs off, plans again, and gives up with a reason. No threads, no clock of its own.
+/// Drives one robot to a target over a map that keeps changing: plans, follows, stops for what the robot's own sensor
+/// sees, backs off, plans again, and gives up with a reason. No threads, no clock of its own.
 class Pilot {
  public:
   explicit Pilot(const PilotParams& params) : params_(params) {}

@@ -91,7 +91,8 @@ std::optional<double> straight_cost(const CostMap& map, const Point2& a, const P
   for (int i = 0; i <= steps; ++i) {
     const Cell cell = map.frame().cell_of(a + (b - a) * (static_cast<double>(i) / steps));
     if (!map.drivable(cell)) return std::nullopt;
-    if (cell.x != before.x && cell.y != before.y && !(map.drivable({cell.x, before.y}) && map.drivable({before.x, cell.y})))
+    if (cell.x != before.x && cell.y != before.y &&
+        !(map.drivable({cell.x, before.y}) && map.drivable({before.x, cell.y})))
       return std::nullopt;
     cost += map.cost_per_metre(cell) * length / (steps + 1);
     before = cell;
@@ -134,9 +135,12 @@ Path measured(const CostMap& map, std::vector<Point2> points) {
 
 Error unreachable_goal(const CostMap& map, const Point2& goal) {
   switch (map.ground(map.frame().cell_of(goal))) {
-    case Ground::kBlocked: return fail(Errc::kDegenerate, "the place is inside a wall or an obstacle");
-    case Ground::kUnknown: return fail(Errc::kDegenerate, "the place is neither on the plan nor seen by a robot");
-    default: return fail(Errc::kDegenerate, "the place is too narrow for the robot");
+    case Ground::kBlocked:
+      return fail(Errc::kDegenerate, "the place is inside a wall or an obstacle");
+    case Ground::kUnknown:
+      return fail(Errc::kDegenerate, "the place is neither on the plan nor seen by a robot");
+    default:
+      return fail(Errc::kDegenerate, "the place is too narrow for the robot");
   }
 }
 

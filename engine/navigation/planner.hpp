@@ -16,8 +16,9 @@ struct Path {
 };
 
 struct PlannerParams {
-  double leave_radius_m = 0.6;  ///< a robot that stands too near to a wall may leave from the nearest drivable cell within
-  double goal_radius_m = 0.5;   ///< a goal too near to a wall is moved to the nearest drivable cell within
+  double leave_radius_m =
+      0.6;  ///< a robot that stands too near to a wall may leave from the nearest drivable cell within
+  double goal_radius_m = 0.5;  ///< a goal too near to a wall is moved to the nearest drivable cell within
   Result<Ok> validate() const;
 };
 

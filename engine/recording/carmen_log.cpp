@@ -103,8 +103,8 @@ std::optional<CarmenScan> read_robotlaser(CarmenLine& line) {
 /// Everything between reading lines and the finished log.
 struct CarmenParts {
   SensorLog log;
-  std::vector<CarmenScan> scans;            ///< in file order
-  std::vector<std::size_t> item_of_scan;    ///< its place in log.items
+  std::vector<CarmenScan> scans;          ///< in file order
+  std::vector<std::size_t> item_of_scan;  ///< its place in log.items
   std::optional<double> fov_deg, range_max_m;
 };
 
@@ -129,7 +129,8 @@ void read_line(std::string_view text, CarmenParts& parts) {
     parts.log.items.emplace_back(odometry);
   } else if (keyword == "PARAM") {
     const std::string_view name = line.word();
-    const double value = name.starts_with("laser_front_laser_fov") || name == "robot_front_laser_max" ? line.number() : 0;
+    const double value =
+        name.starts_with("laser_front_laser_fov") || name == "robot_front_laser_max" ? line.number() : 0;
     if (line.ok() && value > 0) (name == "robot_front_laser_max" ? parts.range_max_m : parts.fov_deg) = value;
   } else {
     ++parts.log.dropped["record not used: " + std::string(keyword.substr(0, 32))];
@@ -177,12 +178,14 @@ void set_angles(LaserScan& scan, double fov_rad) {
 SensorLog assemble(CarmenParts parts) {
   SensorLog& log = parts.log;
   log.format = "carmen";
-  const bool has_flaser = std::any_of(parts.scans.begin(), parts.scans.end(), [](const auto& s) { return s.is_flaser; });
+  const bool has_flaser =
+      std::any_of(parts.scans.begin(), parts.scans.end(), [](const auto& s) { return s.is_flaser; });
   std::set<std::size_t> left_out;
   const double limit_m = range_limit(parts);
   const auto mount = laser_mount(parts.scans);
   if (!mount && !parts.scans.empty())
-    log.warnings.emplace_back("the poses of laser and robot disagree from scan to scan: taking the laser to sit at the middle");
+    log.warnings.emplace_back(
+        "the poses of laser and robot disagree from scan to scan: taking the laser to sit at the middle");
   const auto leave_out = [&](std::size_t i, const std::string& reason) {
     ++log.dropped[reason];
     left_out.insert({parts.item_of_scan[i], parts.item_of_scan[i] - 1});
@@ -197,8 +200,10 @@ SensorLog assemble(CarmenParts parts) {
     if (!read.fov_known) set_angles(read.scan, radians(parts.fov_deg.value_or(180)));
     if (!(read.scan.range_max_m > 0 && read.scan.range_max_m < limit_m)) read.scan.range_max_m = limit_m;
     read.scan.T_robot_laser = mount.value_or(Pose2());
-    if (const auto sound = check(read.scan); !sound) leave_out(i, sound.error().message);
-    else log.items[parts.item_of_scan[i]] = std::move(read.scan);
+    if (const auto sound = check(read.scan); !sound)
+      leave_out(i, sound.error().message);
+    else
+      log.items[parts.item_of_scan[i]] = std::move(read.scan);
   }
   std::size_t at = 0;
   if (!left_out.empty()) std::erase_if(log.items, [&](const LogItem&) { return left_out.contains(at++); });

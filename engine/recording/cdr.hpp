@@ -11,14 +11,16 @@
 
 namespace smokemap {
 
-/// Plain CDR as ROS 2 has it on the wire and in bags: four bytes of header (00 01 00 00 = little endian), then every number
-/// aligned to its own size, counted from behind the header; strings and sequences with a 32 bit length before them.
+/// Plain CDR as ROS 2 has it on the wire and in bags: four bytes of header (00 01 00 00 = little endian), then every
+/// number aligned to its own size, counted from behind the header; strings and sequences with a 32 bit length before
+/// them.
 ///
-/// Own code and not Fast CDR: that library resizes a container to whatever length the bytes claim, before it looks how many
-/// bytes there are, and reports by exceptions. Here a length is believed only when the bytes for it are present.
+/// Own code and not Fast CDR: that library resizes a container to whatever length the bytes claim, before it looks how
+/// many bytes there are, and reports by exceptions. Here a length is believed only when the bytes for it are present.
 
-/// Reads without ever leaving the bytes. The first fault is kept: from then on everything reads as zero or empty, so a decoder
-/// reads straight through and asks once at the end. Bytes left over are fine: newer messages end with more fields.
+/// Reads without ever leaving the bytes. The first fault is kept: from then on everything reads as zero or empty, so a
+/// decoder reads straight through and asks once at the end. Bytes left over are fine: newer messages end with more
+/// fields.
 class CdrReader {
  public:
   explicit CdrReader(std::span<const std::uint8_t> message) {
@@ -33,8 +35,7 @@ class CdrReader {
   bool ok() const { return !failed_; }
 
   template <typename T>
-    requires std::integral<T> || std::floating_point<T>
-  T number() {
+  requires std::integral<T> || std::floating_point<T> T number() {
     if (!align(sizeof(T)) || left() < sizeof(T)) return fault<T>();
     T value;
     std::memcpy(&value, body_.data() + at_, sizeof(T));
@@ -51,8 +52,7 @@ class CdrReader {
   }
 
   template <typename T>
-    requires std::integral<T> || std::floating_point<T>
-  std::vector<T> numbers() {
+  requires std::integral<T> || std::floating_point<T> std::vector<T> numbers() {
     const auto length = number<std::uint32_t>();
     if (failed_ || length == 0) return {};
     if (!align(sizeof(T)) || length > left() / sizeof(T)) return fault<std::vector<T>>();
@@ -71,8 +71,10 @@ class CdrReader {
   }
 
   void skip(std::size_t bytes) {
-    if (bytes > left()) fault<int>();
-    else at_ += bytes;
+    if (bytes > left())
+      fault<int>();
+    else
+      at_ += bytes;
   }
 
  private:
@@ -114,7 +116,7 @@ class CdrWriter {
   CdrWriter() : bytes_{0, 1, 0, 0} {}
 
   template <typename T>
-    requires std::integral<T> || std::floating_point<T>
+  requires std::integral<T> || std::floating_point<T>
   void number(T value) {
     align(sizeof(T));
     append(&value, sizeof(T));
@@ -127,7 +129,7 @@ class CdrWriter {
   }
 
   template <typename T>
-    requires std::integral<T> || std::floating_point<T>
+  requires std::integral<T> || std::floating_point<T>
   void numbers(std::span<const T> values) {
     number(static_cast<std::uint32_t>(values.size()));
     if (values.empty()) return;

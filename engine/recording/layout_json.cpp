@@ -29,13 +29,18 @@ struct BadField : std::runtime_error {
 // Hundredths of a pixel are more than any reader sees; they keep documents short.
 double rounded(double value) { return std::round(value * 100) / 100; }
 Json point_json(const Point2& p) { return {rounded(p.x()), rounded(p.y())}; }
-Json segment_json(const Segment2& s) { return {rounded(s.a.x()), rounded(s.a.y()), rounded(s.b.x()), rounded(s.b.y())}; }
+Json segment_json(const Segment2& s) {
+  return {rounded(s.a.x()), rounded(s.a.y()), rounded(s.b.x()), rounded(s.b.y())};
+}
 
 const char* door_kind(OpeningKind kind) {
   switch (kind) {
-    case OpeningKind::kDoor: return "door";
-    case OpeningKind::kWindow: return "window";
-    case OpeningKind::kPassage: return "passage";
+    case OpeningKind::kDoor:
+      return "door";
+    case OpeningKind::kWindow:
+      return "window";
+    case OpeningKind::kPassage:
+      return "passage";
   }
   return "door";
 }
@@ -58,7 +63,8 @@ class Fields {
     const Json* found = find(field);
     if (!found) return kNone;
     if (!found->is_array()) bad(field, "is no list");
-    if (found->size() > kMostEntries) throw BadField(Errc::kTooLarge, std::string("layout document: too many ") + field);
+    if (found->size() > kMostEntries)
+      throw BadField(Errc::kTooLarge, std::string("layout document: too many ") + field);
     return *found;
   }
 
@@ -87,7 +93,8 @@ class Fields {
   }
 
   std::string text(const Json& value, const char* field) const {
-    if (!value.is_string() || value.get_ref<const std::string&>().size() > 1000) bad(field, "holds something that is no short text");
+    if (!value.is_string() || value.get_ref<const std::string&>().size() > 1000)
+      bad(field, "holds something that is no short text");
     return value.get<std::string>();
   }
 
@@ -104,12 +111,14 @@ int corner_at(LayoutMap& layout, const Point2& p) {
 
 void read_walls(const Fields& fields, LayoutMap& layout) {
   for (const Json& corner : fields.list("corners"))
-    layout.corners.push_back({Fields::point(corner, "corners"), 0, fields.confidence("corner_confidence", layout.corners.size(), 1)});
+    layout.corners.push_back(
+        {Fields::point(corner, "corners"), 0, fields.confidence("corner_confidence", layout.corners.size(), 1)});
   if (!fields.find("walls")) bad("walls", "is missing");
   const Json& walls = fields.list("walls");
   const Json& ends = fields.list("wall_corners");
   if (!ends.empty() && ends.size() != walls.size()) bad("wall_corners", "is of another length than walls");
-  if (ends.empty() && walls.size() > 10'000) throw BadField(Errc::kTooLarge, "layout document: too many walls without wall_corners");
+  if (ends.empty() && walls.size() > 10'000)
+    throw BadField(Errc::kTooLarge, "layout document: too many walls without wall_corners");
   const Json& by_person = fields.list("wall_by_person");
   for (std::size_t i = 0; i < walls.size(); ++i) {
     const auto n = Fields::numbers(walls[i], "walls", 4, 5);
@@ -165,8 +174,8 @@ void read_rooms_and_signs(const Fields& fields, LayoutMap& layout) {
       return found ? Fields::finite(*found, "signs") : fallback;
     };
     const Json* colour = of.find("colour");
-    layout.signs.push_back({Point2(number("x", 0), number("y", 0)), number("r", 0), colour ? of.text(*colour, "signs") : "",
-                            std::clamp(number("confidence", 1), 0.0, 1.0)});
+    layout.signs.push_back({Point2(number("x", 0), number("y", 0)), number("r", 0),
+                            colour ? of.text(*colour, "signs") : "", std::clamp(number("confidence", 1), 0.0, 1.0)});
   }
   if (const Json* here = fields.find("you_are_here")) layout.you_are_here_px = Fields::point(*here, "you_are_here");
   for (const Json& warning : fields.list("warnings")) layout.warnings.push_back(fields.text(warning, "warnings"));
@@ -203,7 +212,8 @@ LayoutDocument parse_layout(std::string_view text) {
   if (!size) bad("size", "is missing");
   const auto wh = Fields::numbers(*size, "size", 2, 2);
   if (!(wh[0] >= 1 && wh[1] >= 1)) bad("size", "is not positive");
-  if (wh[0] > kMostPixels || wh[1] > kMostPixels) throw BadField(Errc::kTooLarge, "layout document: size is over 100000 px");
+  if (wh[0] > kMostPixels || wh[1] > kMostPixels)
+    throw BadField(Errc::kTooLarge, "layout document: size is over 100000 px");
   document.layout.width_px = static_cast<int>(wh[0]);
   document.layout.height_px = static_cast<int>(wh[1]);
   read_walls(fields, document.layout);
@@ -215,7 +225,8 @@ LayoutDocument parse_layout(std::string_view text) {
 }
 
 void add_walls(Json& json, const LayoutMap& layout) {
-  for (const char* field : {"walls", "wall_confidence", "wall_by_person", "wall_corners", "corners", "corner_confidence"})
+  for (const char* field :
+       {"walls", "wall_confidence", "wall_by_person", "wall_corners", "corners", "corner_confidence"})
     json[field] = Json::array();
   for (std::size_t i = 0; i < layout.walls.size(); ++i) {
     const LayoutWall& wall = layout.walls[i];
@@ -245,11 +256,15 @@ void add_the_rest(Json& json, const LayoutMap& layout) {
     json["rooms"].push_back(std::move(outline));
   }
   for (const LayoutSign& sign : layout.signs)
-    json["signs"].push_back({{"x", rounded(sign.p_px.x())}, {"y", rounded(sign.p_px.y())}, {"r", rounded(sign.radius_px)},
-                             {"colour", sign.colour}, {"confidence", rounded(sign.confidence)}});
+    json["signs"].push_back({{"x", rounded(sign.p_px.x())},
+                             {"y", rounded(sign.p_px.y())},
+                             {"r", rounded(sign.radius_px)},
+                             {"colour", sign.colour},
+                             {"confidence", rounded(sign.confidence)}});
   json["you_are_here"] = layout.you_are_here_px ? point_json(*layout.you_are_here_px) : Json();
   json["metres_per_pixel"] = layout.scale ? Json(layout.scale->metres_per_pixel) : Json();
-  if (layout.scale) json["scale_sigma"] = layout.scale->relative_sigma, json["scale_by_person"] = layout.scale->by_person;
+  if (layout.scale)
+    json["scale_sigma"] = layout.scale->relative_sigma, json["scale_by_person"] = layout.scale->by_person;
   json["warnings"] = layout.warnings;
 }
 

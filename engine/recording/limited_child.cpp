@@ -114,7 +114,8 @@ Result<Ok> run_in_limited_child(const ChildLimits& limits, const std::function<v
     if (!ended.in_time || (WIFSIGNALED(ended.status) && WTERMSIG(ended.status) == SIGXCPU))
       return fail(Errc::kCorrupt, "took longer than it may");
     if (WIFSIGNALED(ended.status)) return fail(Errc::kCorrupt, "broke the program that reads it");
-    if (WEXITSTATUS(ended.status) == kThrew) return fail(Errc::kCorrupt, "cannot be read, or needs more memory than it may");
+    if (WEXITSTATUS(ended.status) == kThrew)
+      return fail(Errc::kCorrupt, "cannot be read, or needs more memory than it may");
     return Ok{};
   }
 }

@@ -10,8 +10,8 @@
 namespace smokemap {
 
 struct ChildLimits {
-  double seconds = 5;          ///< wall clock; processor time is limited to the same, rounded up
-  std::size_t bytes = 1 << 30; ///< memory on top of what this process has now
+  double seconds = 5;           ///< wall clock; processor time is limited to the same, rounded up
+  std::size_t bytes = 1 << 30;  ///< memory on top of what this process has now
 };
 
 /// Memory that a child process writes and we read.
@@ -28,11 +28,12 @@ class SharedMemory {
   std::size_t size_ = 0;
 };
 
-/// Runs `work` in a forked child that may neither write files nor outlive us, and waits for it. What it should leave behind it
-/// writes into a SharedMemory. kCorrupt when it crashes, throws or exceeds its limits; kIo when there is no process to be had.
+/// Runs `work` in a forked child that may neither write files nor outlive us, and waits for it. What it should leave
+/// behind it writes into a SharedMemory. kCorrupt when it crashes, throws or exceeds its limits; kIo when there is no
+/// process to be had.
 ///
-/// Only this thread exists in the child: `work` must not wait for others (no thread pools, no parallel loops). A child that
-/// waited for a lock another thread held at the fork is started once more.
+/// Only this thread exists in the child: `work` must not wait for others (no thread pools, no parallel loops). A child
+/// that waited for a lock another thread held at the fork is started once more.
 Result<Ok> run_in_limited_child(const ChildLimits& limits, const std::function<void()>& work);
 
 }  // namespace smokemap

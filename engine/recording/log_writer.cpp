@@ -9,7 +9,10 @@ namespace smokemap {
 namespace {
 
 RosTransform planar_transform(Stamp stamp, const char* parent, const char* child, const Pose2& pose) {
-  return {stamp, parent, child, {pose.x(), pose.y(), 0},
+  return {stamp,
+          parent,
+          child,
+          {pose.x(), pose.y(), 0},
           Eigen::Quaterniond(Eigen::AngleAxisd(pose.heading(), Eigen::Vector3d::UnitZ()))};
 }
 

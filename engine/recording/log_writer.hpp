@@ -22,7 +22,8 @@ class LogWriter {
   Result<Ok> finish() { return mcap_.finish(); }
 
  private:
-  void write(const std::string& robot, const char* name, const char* type, Stamp stamp, std::span<const std::uint8_t> cdr);
+  void write(const std::string& robot, const char* name, const char* type, Stamp stamp,
+             std::span<const std::uint8_t> cdr);
   void write_mount(const std::string& robot, const char* frame, Stamp stamp, const Pose2& T_robot_sensor);
   void write_odometry(const Odometry& odometry);
 

@@ -17,8 +17,8 @@
 namespace smokemap {
 namespace {
 
-// Cells are drawn with the thresholds of nav2's map_saver. The yaml says 0.196 for free all the same: with 0.25 the gray of
-// unknown, 205, which is an occupancy of 0.1961, would be read back as free.
+// Cells are drawn with the thresholds of nav2's map_saver. The yaml says 0.196 for free all the same: with 0.25 the
+// gray of unknown, 205, which is an occupancy of 0.1961, would be read back as free.
 constexpr int kOccupiedPercent = 65;
 constexpr int kFreePercent = 25;
 constexpr double kOccupiedThreshold = 0.65;
@@ -33,7 +33,10 @@ cv::Mat trinary_image(const OccupancyGrid& grid) {
   for (int row = 0; row < image.rows; ++row)
     for (int x = 0; x < image.cols; ++x) {
       const int percent = grid.at({x, image.rows - 1 - row});
-      image.at<std::uint8_t>(row, x) = percent < 0 ? 205 : percent >= kOccupiedPercent ? 0 : percent <= kFreePercent ? 254 : 205;
+      image.at<std::uint8_t>(row, x) = percent < 0                   ? 205
+                                       : percent >= kOccupiedPercent ? 0
+                                       : percent <= kFreePercent     ? 254
+                                                                     : 205;
     }
   return image;
 }
@@ -41,7 +44,8 @@ cv::Mat trinary_image(const OccupancyGrid& grid) {
 Result<Ok> write_image(const cv::Mat& image, const std::filesystem::path& path) {
   std::vector<std::uint8_t> bytes;
   try {
-    if (!cv::imencode(path.extension().string(), image, bytes)) return fail(Errc::kIo, "cannot encode " + path.string());
+    if (!cv::imencode(path.extension().string(), image, bytes))
+      return fail(Errc::kIo, "cannot encode " + path.string());
   } catch (const cv::Exception& e) {
     return fail(Errc::kIo, "cannot encode " + path.string() + ": " + e.err);
   }
@@ -113,7 +117,8 @@ Result<MapYaml> parse_map_yaml(std::string_view text) {
   if (map.mode != "trinary" && map.mode != "scale" && map.mode != "raw")
     return fail(Errc::kUnsupported, "map mode " + map.mode.substr(0, 32));
   map.resolution_m = number_at("resolution", 0);
-  if (!(map.resolution_m > 1e-4 && map.resolution_m < 1e3)) return fail(Errc::kCorrupt, "map yaml without a usable resolution");
+  if (!(map.resolution_m > 1e-4 && map.resolution_m < 1e3))
+    return fail(Errc::kCorrupt, "map yaml without a usable resolution");
   const auto origin = numbers_in(text_at("origin"));
   if (origin.size() != 3) return fail(Errc::kCorrupt, "map yaml without a usable origin");
   if (std::abs(origin[2]) > 1e-9) return fail(Errc::kUnsupported, "a map whose origin is turned");
@@ -171,7 +176,8 @@ Result<OccupancyGrid> read_map(const std::filesystem::path& yaml) {
   if (image.total() > kMostCells) return fail(Errc::kTooLarge, "a map of more than 100 million cells");
   OccupancyGrid grid({map->resolution_m, map->origin, image.cols, image.rows});
   for (int row = 0; row < image.rows; ++row)
-    for (int x = 0; x < image.cols; ++x) grid.at({x, image.rows - 1 - row}) = percent_of(image.at<std::uint8_t>(row, x), *map);
+    for (int x = 0; x < image.cols; ++x)
+      grid.at({x, image.rows - 1 - row}) = percent_of(image.at<std::uint8_t>(row, x), *map);
   return grid;
 }
 

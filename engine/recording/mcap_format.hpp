@@ -5,7 +5,8 @@
 
 namespace smokemap {
 
-/// MCAP: magic, then records of {kind u8, length u64, body}, then magic again (mcap.dev/spec, version 0). Little endian.
+/// MCAP: magic, then records of {kind u8, length u64, body}, then magic again (mcap.dev/spec, version 0). Little
+/// endian.
 inline constexpr std::array<std::uint8_t, 8> kMcapMagic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 
 enum class McapOp : std::uint8_t {

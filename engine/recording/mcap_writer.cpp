@@ -79,15 +79,24 @@ std::uint16_t McapWriter::channel(const std::string& topic, const std::string& t
   if (const auto known = channels_.find(topic); known != channels_.end()) return known->second.id;
   const auto [schema, is_new] = schemas_.try_emplace(type, static_cast<std::uint16_t>(schemas_.size() + 1));
   if (is_new) {
-    schema_records_.push_back(
-        McapRecord(McapOp::kSchema).number(schema->second).string(type).string("ros2msg").string(ros_definition(type)).done());
+    schema_records_.push_back(McapRecord(McapOp::kSchema)
+                                  .number(schema->second)
+                                  .string(type)
+                                  .string("ros2msg")
+                                  .string(ros_definition(type))
+                                  .done());
     append(chunk_.records, schema_records_.back());
   }
   Channel channel;
   channel.id = static_cast<std::uint16_t>(channels_.size());
   channel.schema = schema->second;
-  channel.record =
-      McapRecord(McapOp::kChannel).number(channel.id).number(channel.schema).string(topic).string("cdr").number(std::uint32_t{0}).done();
+  channel.record = McapRecord(McapOp::kChannel)
+                       .number(channel.id)
+                       .number(channel.schema)
+                       .string(topic)
+                       .string("cdr")
+                       .number(std::uint32_t{0})
+                       .done();
   append(chunk_.records, channel.record);
   topics_[channel.id] = topic;
   return channels_.emplace(topic, std::move(channel)).first->second.id;
@@ -114,32 +123,52 @@ void McapWriter::close_chunk() {
   const auto plain_size = std::uint64_t{chunk_.records.size()};
   const std::uint64_t chunk_start = written_;
   put(McapRecord(McapOp::kChunk)
-          .number(chunk_.first_time).number(chunk_.last_time).number(plain_size).number(sum_of(chunk_.records))
-          .string("zstd").number(std::uint64_t{packed.size()}).raw(packed).done());
+          .number(chunk_.first_time)
+          .number(chunk_.last_time)
+          .number(plain_size)
+          .number(sum_of(chunk_.records))
+          .string("zstd")
+          .number(std::uint64_t{packed.size()})
+          .raw(packed)
+          .done());
   const std::uint64_t index_start = written_;
   Bytes offsets;  // of each channel's index: u16 channel, u64 offset
   for (const auto& [channel, entries] : chunk_.index) {
     const std::uint64_t offset = written_;
-    offsets.insert(offsets.end(), reinterpret_cast<const std::uint8_t*>(&channel), reinterpret_cast<const std::uint8_t*>(&channel + 1));
-    offsets.insert(offsets.end(), reinterpret_cast<const std::uint8_t*>(&offset), reinterpret_cast<const std::uint8_t*>(&offset + 1));
+    offsets.insert(offsets.end(), reinterpret_cast<const std::uint8_t*>(&channel),
+                   reinterpret_cast<const std::uint8_t*>(&channel + 1));
+    offsets.insert(offsets.end(), reinterpret_cast<const std::uint8_t*>(&offset),
+                   reinterpret_cast<const std::uint8_t*>(&offset + 1));
     McapRecord index(McapOp::kMessageIndex);
     index.number(channel).number(static_cast<std::uint32_t>(entries.size() * sizeof(Index)));
     for (const Index& entry : entries) index.number(entry.time).number(entry.offset);
     put(index.done());
   }
   chunk_indexes_.push_back(McapRecord(McapOp::kChunkIndex)
-                               .number(chunk_.first_time).number(chunk_.last_time).number(chunk_start)
-                               .number(index_start - chunk_start).number(static_cast<std::uint32_t>(offsets.size())).raw(offsets)
-                               .number(written_ - index_start).string("zstd").number(std::uint64_t{packed.size()})
-                               .number(plain_size).done());
+                               .number(chunk_.first_time)
+                               .number(chunk_.last_time)
+                               .number(chunk_start)
+                               .number(index_start - chunk_start)
+                               .number(static_cast<std::uint32_t>(offsets.size()))
+                               .raw(offsets)
+                               .number(written_ - index_start)
+                               .string("zstd")
+                               .number(std::uint64_t{packed.size()})
+                               .number(plain_size)
+                               .done());
   chunk_ = Chunk();
 }
 
 McapWriter::Bytes McapWriter::statistics() const {
   McapRecord record(McapOp::kStatistics);
-  record.number(messages_).number(static_cast<std::uint16_t>(schemas_.size()))
-      .number(static_cast<std::uint32_t>(channels_.size())).number(std::uint32_t{0}).number(std::uint32_t{0})
-      .number(static_cast<std::uint32_t>(chunk_indexes_.size())).number(first_time_).number(last_time_)
+  record.number(messages_)
+      .number(static_cast<std::uint16_t>(schemas_.size()))
+      .number(static_cast<std::uint32_t>(channels_.size()))
+      .number(std::uint32_t{0})
+      .number(std::uint32_t{0})
+      .number(static_cast<std::uint32_t>(chunk_indexes_.size()))
+      .number(first_time_)
+      .number(last_time_)
       .number(static_cast<std::uint32_t>(channels_.size() * (sizeof(std::uint16_t) + sizeof(std::uint64_t))));
   for (const auto& [id, topic] : topics_) record.number(id).number(std::uint64_t{channels_.at(topic).messages});
   return record.done();
@@ -165,7 +194,8 @@ Result<Ok> McapWriter::finish() {
   const std::uint64_t offsets_start = summary_start + summary.size();
   append(summary, offsets);
   // The sum covers the summary and the footer up to itself.
-  Bytes footer = McapRecord(McapOp::kFooter).number(summary_start).number(offsets_start).number(std::uint32_t{0}).done();
+  Bytes footer =
+      McapRecord(McapOp::kFooter).number(summary_start).number(offsets_start).number(std::uint32_t{0}).done();
   const std::uint32_t sum = sum_of({footer.data(), footer.size() - sizeof(std::uint32_t)}, sum_of(summary));
   std::memcpy(footer.data() + footer.size() - sizeof sum, &sum, sizeof sum);
   put(summary);

@@ -12,8 +12,8 @@
 
 namespace smokemap {
 
-/// Writes MCAP as ROS 2 records it (profile ros2, messages in CDR, schemas as ros2msg), so that Foxglove, `ros2 bag` and
-/// the mcap tools open it: zstd chunks of about 768 KiB with sums, message and chunk indexes, statistics, summary.
+/// Writes MCAP as ROS 2 records it (profile ros2, messages in CDR, schemas as ros2msg), so that Foxglove, `ros2 bag`
+/// and the mcap tools open it: zstd chunks of about 768 KiB with sums, message and chunk indexes, statistics, summary.
 ///
 /// Whole chunks go out as they fill: what is written when power fails can be read up to the last chunk.
 class McapWriter {
@@ -55,8 +55,8 @@ class McapWriter {
   std::ostream& out_;
   std::uint64_t written_ = 0;
   std::map<std::string, std::uint16_t> schemas_;
-  std::map<std::string, Channel> channels_;       ///< by topic
-  std::map<std::uint16_t, std::string> topics_;   ///< by channel
+  std::map<std::string, Channel> channels_;      ///< by topic
+  std::map<std::uint16_t, std::string> topics_;  ///< by channel
   std::vector<Bytes> schema_records_, chunk_indexes_;
   Chunk chunk_;
   std::uint64_t messages_ = 0, first_time_ = 0, last_time_ = 0;

@@ -38,8 +38,10 @@ Result<cv::Mat> draw_pdf_page(std::span<const std::uint8_t> bytes, int page_numb
   renderer.set_image_format(poppler::image::format_bgr24);
   renderer.set_render_hints(poppler::page_renderer::antialiasing | poppler::page_renderer::text_antialiasing);
   poppler::image drawn = renderer.render_page(page.get(), dpi, dpi);
-  if (!drawn.is_valid() || drawn.width() < 1 || drawn.height() < 1) return fail(Errc::kCorrupt, "this page cannot be drawn");
-  return cv::Mat(drawn.height(), drawn.width(), CV_8UC3, drawn.data(), static_cast<std::size_t>(drawn.bytes_per_row())).clone();
+  if (!drawn.is_valid() || drawn.width() < 1 || drawn.height() < 1)
+    return fail(Errc::kCorrupt, "this page cannot be drawn");
+  return cv::Mat(drawn.height(), drawn.width(), CV_8UC3, drawn.data(), static_cast<std::size_t>(drawn.bytes_per_row()))
+      .clone();
 }
 
 }  // namespace smokemap

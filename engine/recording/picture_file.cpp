@@ -19,7 +19,8 @@ struct PictureAnswer {
   char text[200] = {};
 };
 
-/// Any of the forms that decoders give -> 8 bit BGR on white. Plain loops: the child has no threads for OpenCV's parallel ones.
+/// Any of the forms that decoders give -> 8 bit BGR on white. Plain loops: the child has no threads for OpenCV's
+/// parallel ones.
 template <typename Channel>
 void to_bgr_on_white(const cv::Mat& from, cv::Mat& to) {
   constexpr int kFull = sizeof(Channel) == 1 ? 255 : 65535;
@@ -38,10 +39,12 @@ void to_bgr_on_white(const cv::Mat& from, cv::Mat& to) {
   }
 }
 
-Result<cv::Mat> decode_here(std::span<const std::uint8_t> bytes, PictureType type, const PictureLimits& limits, int page) {
+Result<cv::Mat> decode_here(std::span<const std::uint8_t> bytes, PictureType type, const PictureLimits& limits,
+                            int page) {
   if (type == PictureType::kPdf) return draw_pdf_page(bytes, page, limits.pdf_megapixels);
   const cv::Mat wrapped(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
-  // Only JPEG is turned upright by the decoder, and only without IMREAD_UNCHANGED, which the others need for their alpha.
+  // Only JPEG is turned upright by the decoder, and only without IMREAD_UNCHANGED, which the others need for their
+  // alpha.
   const cv::Mat raw = cv::imdecode(wrapped, type == PictureType::kJpeg ? cv::IMREAD_COLOR : cv::IMREAD_UNCHANGED);
   if (raw.empty()) return fail(Errc::kCorrupt, "this picture cannot be decoded");
   if (raw.type() == CV_8UC3) return raw;
@@ -78,7 +81,8 @@ Result<cv::Mat> decode_picture(std::span<const std::uint8_t> bytes, const Pictur
   if (!header) return header.error();
   const bool is_pdf = header->type == PictureType::kPdf;
   if (page != 0 && !is_pdf) return fail(Errc::kNotFound, "only a PDF has pages");
-  const double pixels = is_pdf ? limits.pdf_megapixels * 1.05e6 + 1e5 : static_cast<double>(header->width_px) * header->height_px;
+  const double pixels =
+      is_pdf ? limits.pdf_megapixels * 1.05e6 + 1e5 : static_cast<double>(header->width_px) * header->height_px;
   const SharedMemory memory(sizeof(PictureAnswer) + static_cast<std::size_t>(3 * pixels));
   if (memory.bytes().empty()) return fail(Errc::kTooLarge, "no memory for the picture");
   const auto done = run_in_limited_child({limits.decode_seconds, limits.decode_bytes}, [&] {
@@ -87,7 +91,8 @@ Result<cv::Mat> decode_picture(std::span<const std::uint8_t> bytes, const Pictur
   if (!done) return fail(done.error().code, "the picture " + done.error().message);
   PictureAnswer answer;
   std::memcpy(&answer, memory.bytes().data(), sizeof answer);
-  const bool fits = answer.width > 0 && answer.height > 0 && static_cast<double>(answer.width) * answer.height <= pixels;
+  const bool fits =
+      answer.width > 0 && answer.height > 0 && static_cast<double>(answer.width) * answer.height <= pixels;
   // What the child says is as foreign as the file it read.
   if (answer.why < Errc::kInvalidArgument || answer.why > Errc::kNotConverged) answer.why = Errc::kCorrupt;
   if (!fits) return fail(answer.why, std::string(answer.text, strnlen(answer.text, sizeof answer.text)));

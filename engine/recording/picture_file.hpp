@@ -26,19 +26,20 @@ struct PictureLimits {
 
 struct PictureHeader {
   PictureType type = PictureType::kPng;
-  int width_px = 0;   ///< as stored, before a turn told by EXIF; 0 for PDF
+  int width_px = 0;  ///< as stored, before a turn told by EXIF; 0 for PDF
   int height_px = 0;
 };
 
-/// What the first bytes say. kUnsupported for anything but PNG, JPEG, WebP and PDF; kTooLarge over the limits; kCorrupt for
-/// a header without usable dimensions. Reads no further than the header and allocates nothing.
+/// What the first bytes say. kUnsupported for anything but PNG, JPEG, WebP and PDF; kTooLarge over the limits; kCorrupt
+/// for a header without usable dimensions. Reads no further than the header and allocates nothing.
 Result<PictureHeader> read_picture_header(std::span<const std::uint8_t> bytes, const PictureLimits& limits = {});
 
 /// The picture as 8 bit BGR (CV_8UC3), turned upright as EXIF asks, transparency laid on white, 16 bit, gray and CMYK
 /// converted. A PDF gives the asked page (0 = first).
 ///
-/// Decoded in a child process with limits on time and memory, so that a hostile file costs one clear error and never the
-/// server: kCorrupt when the decoder refuses, crashes, or runs out of what it was given; kNotFound for a page that is not there.
+/// Decoded in a child process with limits on time and memory, so that a hostile file costs one clear error and never
+/// the server: kCorrupt when the decoder refuses, crashes, or runs out of what it was given; kNotFound for a page that
+/// is not there.
 Result<cv::Mat> decode_picture(std::span<const std::uint8_t> bytes, const PictureLimits& limits = {}, int page = 0);
 
 }  // namespace smokemap

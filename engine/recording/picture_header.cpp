@@ -63,7 +63,8 @@ std::optional<Size> jpeg_size(PictureBytes bytes) {
 std::optional<Size> webp_size(PictureBytes bytes) {
   constexpr std::size_t kChunk = 12, kData = 20, kLeast = 30;
   if (bytes.size() < kLeast) return std::nullopt;
-  if (has_at(bytes, kChunk, "VP8X")) return Size{little_endian(bytes, kData + 4, 3) + 1, little_endian(bytes, kData + 7, 3) + 1};
+  if (has_at(bytes, kChunk, "VP8X"))
+    return Size{little_endian(bytes, kData + 4, 3) + 1, little_endian(bytes, kData + 7, 3) + 1};
   if (has_at(bytes, kChunk, "VP8L")) {
     const std::uint32_t packed = little_endian(bytes, kData + 1, 4);
     return Size{(packed & 0x3FFF) + 1, (packed >> 14 & 0x3FFF) + 1};
@@ -88,10 +89,14 @@ std::optional<PictureType> picture_type(PictureBytes bytes) {
 
 const char* media_type(PictureType type) {
   switch (type) {
-    case PictureType::kPng: return "image/png";
-    case PictureType::kJpeg: return "image/jpeg";
-    case PictureType::kWebp: return "image/webp";
-    case PictureType::kPdf: return "application/pdf";
+    case PictureType::kPng:
+      return "image/png";
+    case PictureType::kJpeg:
+      return "image/jpeg";
+    case PictureType::kWebp:
+      return "image/webp";
+    case PictureType::kPdf:
+      return "application/pdf";
   }
   return "application/octet-stream";
 }

@@ -29,11 +29,13 @@ const std::map<std::string_view, Definition>& definitions() {
       {"geometry_msgs/TransformStamped",
        {"std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n", {}}},
       {"sensor_msgs/msg/LaserScan",
-       {"std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
+       {"std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 "
+        "time_increment\n"
         "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n",
         {"std_msgs/Header", "builtin_interfaces/Time"}}},
       {"sensor_msgs/msg/Image",
-       {"std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\nuint8[] data\n",
+       {"std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 "
+        "step\nuint8[] data\n",
         {"std_msgs/Header", "builtin_interfaces/Time"}}},
       {"nav_msgs/msg/Odometry",
        {"std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"

@@ -81,7 +81,8 @@ void RosLogBuilder::add_transforms(const std::string& topic, const std::vector<R
 }
 
 int RosLogBuilder::best_odometry(const Topic& sensor) const {
-  // A robot of its own name space beats a shared one; an odometry topic beats tf; "odom" beats other names; then the fullest.
+  // A robot of its own name space beats a shared one; an odometry topic beats tf; "odom" beats other names; then the
+  // fullest.
   int best = -1;
   std::tuple<std::size_t, bool, bool, std::size_t> best_rank;
   for (std::size_t i = 0; i < topics_.size(); ++i) {
@@ -92,7 +93,8 @@ int RosLogBuilder::best_odometry(const Topic& sensor) const {
       return other.kind == sensor.kind && common_namespace(other.name, topic.name).size() > shared.size();
     };
     if (std::any_of(topics_.begin(), topics_.end(), belongs_to_another)) continue;
-    const std::tuple rank{shared.size(), topic.kind == Kind::kOdometry, base_name(topic.name) == "odom", topic.messages};
+    const std::tuple rank{shared.size(), topic.kind == Kind::kOdometry, base_name(topic.name) == "odom",
+                          topic.messages};
     if (best < 0 || rank > best_rank) best = static_cast<int>(i), best_rank = rank;
   }
   return best;
@@ -156,7 +158,8 @@ SensorMount RosLogBuilder::mount_of(const std::string& robot, const std::string&
          " to sit at the middle of the robot, looking ahead");
   } else {
     known->second = *mount;
-    if (mount->tilt_rad > kMostTiltRad) warn("the sensor " + sensor_frame + " of " + robot + " is tilted: walls will be bent");
+    if (mount->tilt_rad > kMostTiltRad)
+      warn("the sensor " + sensor_frame + " of " + robot + " is tilted: walls will be bent");
   }
   return known->second;
 }

@@ -14,8 +14,8 @@
 
 namespace smokemap {
 
-/// Turns the messages of a bag, whatever its container, into a log. What depends on the whole bag (which topic is the laser
-/// of which robot, where the laser sits) is decided at the end.
+/// Turns the messages of a bag, whatever its container, into a log. What depends on the whole bag (which topic is the
+/// laser of which robot, where the laser sits) is decided at the end.
 class RosLogBuilder {
  public:
   /// `type` as rosbag2 writes it, "sensor_msgs/msg/LaserScan". Types we have no use for are counted.

@@ -14,8 +14,8 @@
 
 namespace smokemap {
 
-/// The ROS 2 messages of a log, decoded from CDR straight into our nouns. What the nouns have no word for (frames) stays
-/// beside them. A decoder gives nothing when the bytes end early, a length lies, or a string is not terminated.
+/// The ROS 2 messages of a log, decoded from CDR straight into our nouns. What the nouns have no word for (frames)
+/// stays beside them. A decoder gives nothing when the bytes end early, a length lies, or a string is not terminated.
 
 inline constexpr const char* kLaserScanType = "sensor_msgs/msg/LaserScan";
 inline constexpr const char* kOdometryType = "nav_msgs/msg/Odometry";
@@ -50,7 +50,8 @@ std::optional<std::vector<RosTransform>> decode_transforms(std::span<const std::
 std::optional<RosRadar> decode_radar(std::span<const std::uint8_t> cdr);
 
 std::vector<std::uint8_t> encode_scan(const LaserScan& scan, const std::string& frame);
-std::vector<std::uint8_t> encode_odometry(const Odometry& odometry, const std::string& frame, const std::string& child_frame);
+std::vector<std::uint8_t> encode_odometry(const Odometry& odometry, const std::string& frame,
+                                          const std::string& child_frame);
 std::vector<std::uint8_t> encode_transforms(std::span<const RosTransform> transforms);
 std::vector<std::uint8_t> encode_radar(const RadarSweep& sweep, const std::string& frame);
 

@@ -73,8 +73,8 @@ Result<Ok> read_db3(std::span<const std::uint8_t> bytes, RosLogBuilder& builder)
   if (!copy) return fail(Errc::kTooLarge, "no memory to unpack the bag");
   std::memcpy(copy, bytes.data(), bytes.size());
   const auto size = static_cast<sqlite3_int64>(bytes.size());
-  if (sqlite3_deserialize(opened, "main", copy, size, size, SQLITE_DESERIALIZE_FREEONCLOSE | SQLITE_DESERIALIZE_READONLY) !=
-      SQLITE_OK)
+  if (sqlite3_deserialize(opened, "main", copy, size, size,
+                          SQLITE_DESERIALIZE_FREEONCLOSE | SQLITE_DESERIALIZE_READONLY) != SQLITE_OK)
     return database_error(opened);
   return read_messages(opened, builder);
 }

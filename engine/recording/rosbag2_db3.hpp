@@ -9,8 +9,9 @@
 
 namespace smokemap {
 
-/// Adds the messages of one rosbag2 SQLite file, in the order of their record times: tables `topics` and `messages`, which all
-/// schema versions share. A damaged file gives what can be read before the damage, with a warning; kCorrupt if that is nothing.
+/// Adds the messages of one rosbag2 SQLite file, in the order of their record times: tables `topics` and `messages`,
+/// which all schema versions share. A damaged file gives what can be read before the damage, with a warning; kCorrupt
+/// if that is nothing.
 Result<Ok> read_db3(const std::filesystem::path& path, RosLogBuilder& builder);
 
 /// The same from memory (a file that was unpacked).

@@ -21,7 +21,8 @@ std::string tum_stamp(Stamp stamp) {
   std::array<char, 40> text;
   const bool negative = stamp < 0;
   const std::uint64_t size = negative ? 0 - static_cast<std::uint64_t>(stamp) : static_cast<std::uint64_t>(stamp);
-  std::snprintf(text.data(), text.size(), "%s%" PRIu64 ".%09" PRIu64, negative ? "-" : "", size / kSecond, size % kSecond);
+  std::snprintf(text.data(), text.size(), "%s%" PRIu64 ".%09" PRIu64, negative ? "-" : "", size / kSecond,
+                size % kSecond);
   return text.data();
 }
 

@@ -10,8 +10,9 @@ namespace smokemap {
 
 /// Holds a DDS domain of this process open; the last holder closes it.
 ///
-/// With CYCLONEDDS_URI in the environment, that alone decides about interfaces, peers and security. Without it the domain
-/// speaks on loopback only, without multicast, to up to 61 participants of this machine: nothing leaves it by accident.
+/// With CYCLONEDDS_URI in the environment, that alone decides about interfaces, peers and security. Without it the
+/// domain speaks on loopback only, without multicast, to up to 61 participants of this machine: nothing leaves it by
+/// accident.
 class DdsDomain {
  public:
   /// kInvalidArgument outside 0..230; kIo when DDS refuses the configuration.

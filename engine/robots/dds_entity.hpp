@@ -41,8 +41,8 @@ struct DeleteQos {
 };
 using DdsQos = std::unique_ptr<dds_qos_t, DeleteQos>;
 
-/// Takes samples of a C type and gives each valid one to `use(const T&, const dds_sample_info_t&)`; the loan goes back on every
-/// path. Without `use_invalid` samples that only tell of a change of state are passed over.
+/// Takes samples of a C type and gives each valid one to `use(const T&, const dds_sample_info_t&)`; the loan goes back
+/// on every path. Without `use_invalid` samples that only tell of a change of state are passed over.
 template <typename T, typename Use>
 void take_all(dds_entity_t reader, Use&& use, bool use_invalid = false) {
   constexpr std::size_t kBatch = 16;

@@ -154,7 +154,8 @@ class RobotGateway::Impl {
           const DdsGuid id = guid_of(told.key);
           if (info.instance_state != DDS_ALIVE_INSTANCE_STATE) return table_.remove(id);
           if (!info.valid_data || guid_of(told.participant_key) == own_participant_) return;
-          Endpoint endpoint{text_of(told.topic_name), text_of(told.type_name), offered(told.qos), guid_of(told.participant_key)};
+          Endpoint endpoint{text_of(told.topic_name), text_of(told.type_name), offered(told.qos),
+                            guid_of(told.participant_key)};
           writers ? table_.add_writer(id, std::move(endpoint)) : table_.add_reader(id, std::move(endpoint));
         },
         true);
@@ -164,7 +165,8 @@ class RobotGateway::Impl {
     for (const auto& [id, topics] : present) adopt(topics);
   }
 
-  /// Opens what a robot newly offers, closes what it no longer does. Readers of a robot that is gone stay for its return.
+  /// Opens what a robot newly offers, closes what it no longer does. Readers of a robot that is gone stay for its
+  /// return.
   void adopt(const RobotTopics& topics) {
     auto& robot = robots_[topics.robot];
     if (!robot) robot = std::make_unique<Robot>(topics.robot, *this);
@@ -177,8 +179,9 @@ class RobotGateway::Impl {
     const std::lock_guard lock(mutex_);
     Shown& shown = shown_[topics.robot];
     shown.link.id = topics.robot;
-    write_to(shown.velocity, topics.velocity, topics.stamped_velocity,
-             topics.stamped_velocity ? &geometry_msgs_msg_dds__TwistStamped__desc : &geometry_msgs_msg_dds__Twist__desc);
+    write_to(
+        shown.velocity, topics.velocity, topics.stamped_velocity,
+        topics.stamped_velocity ? &geometry_msgs_msg_dds__TwistStamped__desc : &geometry_msgs_msg_dds__Twist__desc);
     write_to(shown.goal, topics.goal, true, &geometry_msgs_msg_dds__PoseStamped__desc);
   }
 
@@ -194,7 +197,9 @@ class RobotGateway::Impl {
 
   void open_readers(Robot& robot) {
     const RobotTopics& t = robot.topics;
-    const auto transforms_qos = [&](const std::string& topic) { return reader_qos_for(table_.offer(topic), kTransformDepth); };
+    const auto transforms_qos = [&](const std::string& topic) {
+      return reader_qos_for(table_.offer(topic), kTransformDepth);
+    };
     read<RosScanMsg>(robot, t.scan, &sensor_msgs_msg_dds__LaserScan__desc, sensor_qos(), &Impl::on_scan);
     read<RosOdometryMsg>(robot, t.odometry, &nav_msgs_msg_dds__Odometry__desc, sensor_qos(), &Impl::on_odometry);
     read<RosImageMsg>(robot, t.radar, &sensor_msgs_msg_dds__Image__desc, reader_qos_for(table_.offer(t.radar), 2),
@@ -215,7 +220,8 @@ class RobotGateway::Impl {
     if (topic.empty() || robot.readers.contains(topic)) return;
     TopicReader opened;
     opened.topic = DdsEntity(dds_create_topic(participant_.get(), type, topic.c_str(), nullptr, nullptr));
-    if (opened.topic) opened.reader = DdsEntity(dds_create_reader(participant_.get(), opened.topic.get(), qos.get(), nullptr));
+    if (opened.topic)
+      opened.reader = DdsEntity(dds_create_reader(participant_.get(), opened.topic.get(), qos.get(), nullptr));
     if (!opened.reader)
       return raise(robot.topics.robot, "read:" + topic, "cannot listen to " + topic + ": " + opened.topic.why());
     const dds_entity_t reader = opened.reader.get();
@@ -244,7 +250,8 @@ class RobotGateway::Impl {
     if (topic.empty()) return;
     command.topic = DdsEntity(dds_create_topic(participant_.get(), type, topic.c_str(), nullptr, nullptr));
     if (command.topic)
-      command.writer = DdsEntity(dds_create_writer(participant_.get(), command.topic.get(), state_qos(10).get(), nullptr));
+      command.writer =
+          DdsEntity(dds_create_writer(participant_.get(), command.topic.get(), state_qos(10).get(), nullptr));
   }
 
   /// Two sources on one topic are never mixed: the first is listened to as long as it says something.
@@ -300,8 +307,10 @@ class RobotGateway::Impl {
       const RosTransformMsg& transform = message.transforms._buffer[i];
       if (!text_of(transform.header.frame_id).ends_with("odom")) continue;
       auto odometry = to_odometry(transform);
-      if (!odometry) robot.intake.drop(odometry.error().message);
-      else robot.intake.odometry(std::move(*odometry), text_of(transform.child_frame_id), clock_->now());
+      if (!odometry)
+        robot.intake.drop(odometry.error().message);
+      else
+        robot.intake.odometry(std::move(*odometry), text_of(transform.child_frame_id), clock_->now());
     }
   }
 

@@ -17,10 +17,10 @@
 namespace smokemap {
 
 struct GatewayParams {
-  int domain = 0;                            ///< ROS_DOMAIN_ID, 0..230
+  int domain = 0;  ///< ROS_DOMAIN_ID, 0..230
   LinkParams link;
-  double mount_wait_s = 0.5;                 ///< scans wait this long for the transform of their sensor
-  std::map<std::string, Pose2> mounts;       ///< T_robot_laser by robot, where a robot does not publish it
+  double mount_wait_s = 0.5;            ///< scans wait this long for the transform of their sensor
+  std::map<std::string, Pose2> mounts;  ///< T_robot_laser by robot, where a robot does not publish it
   Result<Ok> validate() const;
 };
 
@@ -34,21 +34,21 @@ struct GatewayAlarm {
 struct RobotLink {
   std::string id;  ///< the namespace of its topics; "robot" where there is none
   LinkFreshness link = LinkFreshness::kLost;
-  Stamp last_heard = 0;                        ///< our clock
+  Stamp last_heard = 0;  ///< our clock
   bool has_radar = false;
-  bool takes_velocity = false;                 ///< somebody subscribes its cmd_vel
-  bool takes_goals = false;                    ///< somebody subscribes its goal_pose
+  bool takes_velocity = false;  ///< somebody subscribes its cmd_vel
+  bool takes_goals = false;     ///< somebody subscribes its goal_pose
   std::size_t scans = 0, sweeps = 0, odometry_readings = 0;
   std::map<std::string, std::size_t> dropped;  ///< reason -> count
 };
 
-/// Finds robots on a ROS 2 network by their topics, listens to them and drives them. Plain DDS: no ROS is needed here, and
-/// no Smokemap there.
+/// Finds robots on a ROS 2 network by their topics, listens to them and drives them. Plain DDS: no ROS is needed here,
+/// and no Smokemap there.
 ///
-/// A robot is any namespace that publishes a sensor_msgs/LaserScan. Read: its laser scan, odometry, radar (radar_image.hpp,
-/// docs/robots.md), tf and tf_static (its own and the shared ones). Written: cmd_vel (Twist or TwistStamped, whichever its
-/// subscriber takes) and goal_pose, both only once somebody subscribes them.
-/// Messages that are not what they should be are dropped and counted by reason; nothing a robot sends can stop the gateway.
+/// A robot is any namespace that publishes a sensor_msgs/LaserScan. Read: its laser scan, odometry, radar
+/// (radar_image.hpp, docs/robots.md), tf and tf_static (its own and the shared ones). Written: cmd_vel (Twist or
+/// TwistStamped, whichever its subscriber takes) and goal_pose, both only once somebody subscribes them. Messages that
+/// are not what they should be are dropped and counted by reason; nothing a robot sends can stop the gateway.
 class RobotGateway {
  public:
   /// Called from the gateway's own thread, one at a time; must be quick and must not throw. All are optional.

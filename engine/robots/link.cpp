@@ -6,9 +6,12 @@ namespace smokemap {
 
 const char* to_string(LinkFreshness state) {
   switch (state) {
-    case LinkFreshness::kFresh: return "fresh";
-    case LinkFreshness::kStale: return "stale";
-    case LinkFreshness::kLost: return "lost";
+    case LinkFreshness::kFresh:
+      return "fresh";
+    case LinkFreshness::kStale:
+      return "stale";
+    case LinkFreshness::kLost:
+      return "lost";
   }
   broken_promise("a known LinkFreshness", __FILE__, __LINE__);
 }

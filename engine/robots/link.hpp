@@ -4,8 +4,8 @@
 
 namespace smokemap {
 
-/// How fresh a robot's data is, by our own clock at reception. Deadline and liveliness are never requested from a robot:
-/// ROS writers offer neither, and asking for them means to receive nothing at all.
+/// How fresh a robot's data is, by our own clock at reception. Deadline and liveliness are never requested from a
+/// robot: ROS writers offer neither, and asking for them means to receive nothing at all.
 enum class LinkFreshness { kFresh, kStale, kLost };
 
 const char* to_string(LinkFreshness state);

@@ -16,8 +16,8 @@
 
 namespace smokemap {
 
-/// What happens to one robot's data between the wire and the engine: sensors get their place on the robot, faulty messages are
-/// counted and left out. No DDS in here.
+/// What happens to one robot's data between the wire and the engine: sensors get their place on the robot, faulty
+/// messages are counted and left out. No DDS in here.
 class RobotIntake {
  public:
   using Alarm = std::function<void(const std::string& id, const std::string& text)>;

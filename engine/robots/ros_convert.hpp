@@ -45,7 +45,8 @@ Result<Odometry> to_odometry(const RosTransformMsg& message);
 
 /// Writes one message. What the C struct points at lives in C++ values for the time of the call only.
 bool write_scan(dds_entity_t writer, const LaserScan& scan, const std::string& frame);
-bool write_odometry(dds_entity_t writer, const Odometry& odometry, const std::string& frame, const std::string& child_frame);
+bool write_odometry(dds_entity_t writer, const Odometry& odometry, const std::string& frame,
+                    const std::string& child_frame);
 bool write_sweep(dds_entity_t writer, const RadarSweep& sweep, const std::string& frame);
 bool write_goal(dds_entity_t writer, const Pose2& T_frame_goal, const std::string& frame, Stamp stamp);
 bool write_twist(dds_entity_t writer, double speed_mps, double turn_rate_radps);

@@ -28,24 +28,32 @@ OfferedQos offered(const dds_qos_t* qos) {
   dds_reliability_kind_t reliability = DDS_RELIABILITY_BEST_EFFORT;
   dds_durability_kind_t durability = DDS_DURABILITY_VOLATILE;
   dds_duration_t blocking = 0;
-  if (qos && dds_qget_reliability(qos, &reliability, &blocking)) offer.reliable = reliability == DDS_RELIABILITY_RELIABLE;
+  if (qos && dds_qget_reliability(qos, &reliability, &blocking))
+    offer.reliable = reliability == DDS_RELIABILITY_RELIABLE;
   if (qos && dds_qget_durability(qos, &durability)) offer.transient_local = durability != DDS_DURABILITY_VOLATILE;
   return offer;
 }
 
 DdsQos reader_qos_for(const OfferedQos& offer, int depth) {
   return ros_qos(offer.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
-                 offer.reliable && offer.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE, depth);
+                 offer.reliable && offer.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE,
+                 depth);
 }
 
 const char* policy_name(std::uint32_t policy_id) {
   switch (policy_id) {
-    case DDS_DURABILITY_QOS_POLICY_ID: return "durability";
-    case DDS_DEADLINE_QOS_POLICY_ID: return "deadline";
-    case DDS_LIVELINESS_QOS_POLICY_ID: return "liveliness";
-    case DDS_RELIABILITY_QOS_POLICY_ID: return "reliability";
-    case DDS_PARTITION_QOS_POLICY_ID: return "partition";
-    default: return "quality of service";
+    case DDS_DURABILITY_QOS_POLICY_ID:
+      return "durability";
+    case DDS_DEADLINE_QOS_POLICY_ID:
+      return "deadline";
+    case DDS_LIVELINESS_QOS_POLICY_ID:
+      return "liveliness";
+    case DDS_RELIABILITY_QOS_POLICY_ID:
+      return "reliability";
+    case DDS_PARTITION_QOS_POLICY_ID:
+      return "partition";
+    default:
+      return "quality of service";
   }
 }
 

@@ -50,7 +50,8 @@ class RosRobotNode::Impl {
       take<RosTwistMsg>(velocity_, "cmd_vel", &geometry_msgs_msg_dds__Twist__desc,
                         [this](const auto& m) { on_velocity(m.linear.x, m.angular.z); });
     take<RosPoseMsg>(goal_, "goal_pose", &geometry_msgs_msg_dds__PoseStamped__desc, [this](const RosPoseMsg& m) {
-      if (const auto goal = to_pose(m); goal && callbacks_.on_goal) callbacks_.on_goal(*goal, text_of(m.header.frame_id));
+      if (const auto goal = to_pose(m); goal && callbacks_.on_goal)
+        callbacks_.on_goal(*goal, text_of(m.header.frame_id));
     });
     thread_.start();
   }
@@ -59,7 +60,8 @@ class RosRobotNode::Impl {
   /// kIo if any of the topics could not be opened.
   Result<Ok> opened() const {
     for (const Topic* topic : {&scan_, &odometry_, &moving_, &fixed_, &velocity_, &goal_})
-      if (!topic->endpoint) return fail(Errc::kIo, "a topic of " + params_.robot + " does not open: " + topic->endpoint.why());
+      if (!topic->endpoint)
+        return fail(Errc::kIo, "a topic of " + params_.robot + " does not open: " + topic->endpoint.why());
     return Ok{};
   }
 
@@ -122,7 +124,8 @@ class RosRobotNode::Impl {
   }
 
   void on_velocity(double speed_mps, double turn_rate_radps) {
-    if (!std::isfinite(speed_mps) || !std::isfinite(turn_rate_radps)) speed_mps = turn_rate_radps = 0;  // better to stand
+    if (!std::isfinite(speed_mps) || !std::isfinite(turn_rate_radps))
+      speed_mps = turn_rate_radps = 0;  // better to stand
     if (callbacks_.on_velocity) callbacks_.on_velocity(speed_mps, turn_rate_radps);
   }
 

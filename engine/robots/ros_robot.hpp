@@ -34,8 +34,8 @@ class RosRobotNode {
   RosRobotNode(const RosRobotNode&) = delete;
   RosRobotNode& operator=(const RosRobotNode&) = delete;
 
-  /// Thread-safe. A full or absent network costs the message, never the caller. Where a sensor sits on the robot goes out on
-  /// tf_static before its first message, and again when it changes.
+  /// Thread-safe. A full or absent network costs the message, never the caller. Where a sensor sits on the robot goes
+  /// out on tf_static before its first message, and again when it changes.
   void publish(const LaserScan& scan);
   void publish(const Odometry& odometry);  ///< odom, and odom -> base_link on tf
   void publish(const RadarSweep& sweep);

@@ -8,15 +8,18 @@
 
 namespace smokemap {
 
-/// The topic of that type in the robot's namespace: the wanted name first, then (unless only that will do) the first by name.
-std::string TopicTable::choose(const Endpoints& endpoints, const std::string& robot, const char* type, const char* wanted,
-                               bool only_wanted) {
+/// The topic of that type in the robot's namespace: the wanted name first, then (unless only that will do) the first by
+/// name.
+std::string TopicTable::choose(const Endpoints& endpoints, const std::string& robot, const char* type,
+                               const char* wanted, bool only_wanted) {
   std::string best;
   for (const auto& [id, endpoint] : endpoints) {
     if (endpoint.type != type) continue;
     const auto name = parse_dds_topic(endpoint.topic);
     if (!name || name->robot != robot || (only_wanted && name->last_word != wanted)) continue;
-    const auto rank = [&](const std::string& topic) { return std::tuple(!topic.ends_with("/" + std::string(wanted)), topic); };
+    const auto rank = [&](const std::string& topic) {
+      return std::tuple(!topic.ends_with("/" + std::string(wanted)), topic);
+    };
     if (best.empty() || rank(endpoint.topic) < rank(best)) best = endpoint.topic;
   }
   return best;

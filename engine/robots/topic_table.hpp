@@ -40,9 +40,9 @@ class TopicTable {
   void add_reader(const DdsGuid& id, Endpoint endpoint) { readers_[id] = std::move(endpoint); }
   void remove(const DdsGuid& id) { writers_.erase(id), readers_.erase(id); }
 
-  /// A robot is any first word of a namespace under which a laser scan is published. Of several scans the one called "scan", else
-  /// the first by name; likewise for odometry. Where its namespace has no odometry (or no transforms), the topics without
-  /// a namespace are taken, unless they are another robot's.
+  /// A robot is any first word of a namespace under which a laser scan is published. Of several scans the one called
+  /// "scan", else the first by name; likewise for odometry. Where its namespace has no odometry (or no transforms), the
+  /// topics without a namespace are taken, unless they are another robot's.
   std::vector<RobotTopics> robots() const;
 
   /// What the writers of this topic offer together: a reader must fit the weakest.

@@ -11,8 +11,8 @@
 
 namespace smokemap {
 
-/// One thread that waits for DDS and calls whoever has something to do. No listeners: Cyclone 0.10.2 loses events that are
-/// pending when one is set, and calls them with its locks held.
+/// One thread that waits for DDS and calls whoever has something to do. No listeners: Cyclone 0.10.2 loses events that
+/// are pending when one is set, and calls them with its locks held.
 class WaitThread {
  public:
   using Handler = std::function<void()>;

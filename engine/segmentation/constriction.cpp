@@ -1,9 +1,10 @@
 // Rooms by peeling. The local thickness is nearly constant inside a room and inside a corridor. First, basins: two wide
-// places are parted where the clearance between them falls below `pinch_ratio` of the lesser one (a door). Then, within a
-// basin and from the thickest place on, a room is everything connected to it that is at least `step_ratio` as thick; the
-// thickest remaining place starts the next room (a corridor that opens into a hall has no door, only a step). Left over are corners, window recesses and door slots: pieces that are shallow compared with the
-// opening through which they hang on to a neighbour. They are given back to it, shallowest first.
-// Only ratios are used, so neither the resolution nor the largest hall matters.
+// places are parted where the clearance between them falls below `pinch_ratio` of the lesser one (a door). Then, within
+// a basin and from the thickest place on, a room is everything connected to it that is at least `step_ratio` as thick;
+// the thickest remaining place starts the next room (a corridor that opens into a hall has no door, only a step). Left
+// over are corners, window recesses and door slots: pieces that are shallow compared with the opening through which
+// they hang on to a neighbour. They are given back to it, shallowest first. Only ratios are used, so neither the
+// resolution nor the largest hall matters.
 #include "segmentation/constriction.hpp"
 
 #include <algorithm>
@@ -45,7 +46,8 @@ cv::Mat find_basins(const cv::Mat& clearance, const std::vector<cv::Point>& orde
   std::vector<int> parent(1, 0);
   std::vector<float> peak(1, 0);
   const auto root = [&](int id) {
-    while (parent[static_cast<size_t>(id)] != id) id = parent[static_cast<size_t>(id)] = parent[static_cast<size_t>(parent[static_cast<size_t>(id)])];
+    while (parent[static_cast<size_t>(id)] != id)
+      id = parent[static_cast<size_t>(id)] = parent[static_cast<size_t>(parent[static_cast<size_t>(id)])];
     return id;
   };
   for (const cv::Point& p : order) {
@@ -61,7 +63,8 @@ cv::Mat find_basins(const cv::Mat& clearance, const std::vector<cv::Point>& orde
       }
       const int high = peak[static_cast<size_t>(own)] >= peak[static_cast<size_t>(other)] ? own : other;
       const int low = high == own ? other : own;
-      if (here >= static_cast<float>(pinch_ratio) * peak[static_cast<size_t>(low)]) parent[static_cast<size_t>(low)] = high;
+      if (here >= static_cast<float>(pinch_ratio) * peak[static_cast<size_t>(low)])
+        parent[static_cast<size_t>(low)] = high;
       own = high;
     }
     if (own == 0) {

@@ -39,9 +39,8 @@ Polygon region_outline(const Segmentation& segmentation, int label, double toler
   std::vector<std::vector<cv::Point>> rings;
   cv::findContours(segmentation.labels == label, rings, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
   if (label <= 0 || rings.empty()) return {};
-  const auto longest = std::max_element(rings.begin(), rings.end(), [](const auto& one, const auto& two) {
-    return one.size() < two.size();
-  });
+  const auto longest = std::max_element(rings.begin(), rings.end(),
+                                        [](const auto& one, const auto& two) { return one.size() < two.size(); });
   std::vector<cv::Point> simple;
   cv::approxPolyDP(*longest, simple, tolerance_px, true);
   Polygon outline;

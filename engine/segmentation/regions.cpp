@@ -36,7 +36,8 @@ std::vector<Tally> tally_labels(const cv::Mat& labels) {
       tally.sum_x += x;
       tally.sum_y += y;
     }
-  std::stable_sort(tallies.begin(), tallies.end(), [](const Tally& one, const Tally& two) { return one.area > two.area; });
+  std::stable_sort(tallies.begin(), tallies.end(),
+                   [](const Tally& one, const Tally& two) { return one.area > two.area; });
   return tallies;
 }
 

@@ -21,7 +21,8 @@ struct Contact {
   std::vector<cv::Point> pixels;  ///< row by row
 };
 
-/// All contacts (4 neighbours); two openings between the same rooms are two contacts. Ordered by labels, then first pixel.
+/// All contacts (4 neighbours); two openings between the same rooms are two contacts. Ordered by labels, then first
+/// pixel.
 std::vector<Contact> find_contacts(const cv::Mat& labels);
 
 }  // namespace smokemap

@@ -71,7 +71,8 @@ void sweep_crumbs(cv::Mat& labels, double least_area) {
   cv::Mat to_room(labels.size(), CV_8UC1, cv::Scalar(255)), distance, nearest;
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x)
-      if (const int label = labels.at<int>(y, x); label != 0 && areas[label] >= limit) to_room.at<unsigned char>(y, x) = 0;
+      if (const int label = labels.at<int>(y, x); label != 0 && areas[label] >= limit)
+        to_room.at<unsigned char>(y, x) = 0;
   cv::distanceTransform(to_room, distance, nearest, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
   std::map<int, int> label_of;  // of the room pixel that the transform numbered so
   for (int y = 0; y < labels.rows; ++y)
@@ -163,10 +164,17 @@ Result<cv::Mat> free_space_of_picture(const cv::Mat& picture, int threshold) {
   cv::Mat bytes = picture, gray;
   if (picture.depth() == CV_16U) picture.convertTo(bytes, CV_8U, 1.0 / 257);
   switch (bytes.channels()) {
-    case 1: gray = bytes; break;
-    case 3: cv::cvtColor(bytes, gray, cv::COLOR_BGR2GRAY); break;
-    case 4: cv::cvtColor(bytes, gray, cv::COLOR_BGRA2GRAY); break;
-    default: return fail(Errc::kInvalidArgument, "the picture must have 1, 3 or 4 channels");
+    case 1:
+      gray = bytes;
+      break;
+    case 3:
+      cv::cvtColor(bytes, gray, cv::COLOR_BGR2GRAY);
+      break;
+    case 4:
+      cv::cvtColor(bytes, gray, cv::COLOR_BGRA2GRAY);
+      break;
+    default:
+      return fail(Errc::kInvalidArgument, "the picture must have 1, 3 or 4 channels");
   }
   return cv::Mat(gray > threshold);
 }

@@ -24,27 +24,29 @@ struct SegmentationParams {
 /// The parameters for a kind of map. They differ for sketches, which have no furniture and name small niches.
 SegmentationParams segmentation_params(MapKind kind);
 
-/// The parameters for maps that are to be matched, the same for both: only regions large enough to be told apart on a drawing.
+/// The parameters for maps that are to be matched, the same for both: only regions large enough to be told apart on a
+/// drawing.
 SegmentationParams matching_segmentation_params();
 
 /// Splits free space into regions (rooms, corridors).
 ///
-/// Every free pixel gets exactly one region and isolated rooms stay. A region is connected (4 neighbours), but for crumbs of
-/// free space too small for a room and cut off from all, which take the label of the nearest region. The result does
-/// not depend on the largest open space of the map; a turn by 90 degrees turns it, but for ties.
+/// Every free pixel gets exactly one region and isolated rooms stay. A region is connected (4 neighbours), but for
+/// crumbs of free space too small for a room and cut off from all, which take the label of the nearest region. The
+/// result does not depend on the largest open space of the map; a turn by 90 degrees turns it, but for ties.
 ///
 /// @param free_space  CV_8UC1, 255 = free, anything else = not free; untouched
 /// @return regions in descending area (ties: topmost, then leftmost pixel). kDegenerate if there is no free cell,
 ///         kInvalidArgument for another pixel type or parameters out of range, kTooLarge over 64 megapixels or
 ///         over 65535 regions.
 /// Cost: a megapixel takes a few tenths of a second and about 60 MB. Deterministic.
-/// Source: local thickness and its steps are those of MAORIS (Mielle, Magnusson, Lilienthal, ICRA 2018); differs: thickness is
-/// not scaled by the largest open space, rooms are peeled from basins instead of merged by chains of contacts, what is a
-/// niche is told by depth over width, borders are the shortest straight cuts, and isolated regions are kept.
+/// Source: local thickness and its steps are those of MAORIS (Mielle, Magnusson, Lilienthal, ICRA 2018); differs:
+/// thickness is not scaled by the largest open space, rooms are peeled from basins instead of merged by chains of
+/// contacts, what is a niche is told by depth over width, borders are the shortest straight cuts, and isolated regions
+/// are kept.
 Result<Segmentation> segment(const cv::Mat& free_space, const SegmentationParams& params = {});
 
-/// Rebuilds regions and borders from a label image alone (CV_16UC1, any labels; they are renumbered in descending area).
-/// For label images made elsewhere: by hand, by another program, read back from disk.
+/// Rebuilds regions and borders from a label image alone (CV_16UC1, any labels; they are renumbered in descending
+/// area). For label images made elsewhere: by hand, by another program, read back from disk.
 Result<Segmentation> segmentation_from_labels(const cv::Mat& labels);
 
 /// 255 where a gray or colour picture of a map is brighter than `threshold` (as everywhere in the field), else 0.

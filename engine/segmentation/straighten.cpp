@@ -11,12 +11,12 @@
 namespace smokemap {
 namespace {
 
-constexpr double kReach = 1.2;        ///< how far the ends of a cut may slide along the walls, in widths of the contact
-constexpr double kSlideCost = 0.3;    ///< widths of cut that a slide of one width must save
-constexpr double kLeastSpan = 0.25;   ///< widths of the contact that a cut must span along it
-constexpr size_t kMaxAttempts = 12;      ///< cuts tried for parting the two regions
+constexpr double kReach = 1.2;       ///< how far the ends of a cut may slide along the walls, in widths of the contact
+constexpr double kSlideCost = 0.3;   ///< widths of cut that a slide of one width must save
+constexpr double kLeastSpan = 0.25;  ///< widths of the contact that a cut must span along it
+constexpr size_t kMaxAttempts = 12;  ///< cuts tried for parting the two regions
 constexpr size_t kMaxWallPixels = 120;  ///< of each end looked at; more are thinned out evenly
-constexpr size_t kMaxTried = 4000;    ///< cuts looked at for a free line of sight, best first
+constexpr size_t kMaxTried = 4000;      ///< cuts looked at for a free line of sight, best first
 
 struct Cut {
   cv::Point a, b;
@@ -24,8 +24,7 @@ struct Cut {
 };
 
 bool is_free(const cv::Mat& structure, const cv::Point& p) {
-  return p.x >= 0 && p.y >= 0 && p.x < structure.cols && p.y < structure.rows &&
-         structure.at<unsigned char>(p) == 255;
+  return p.x >= 0 && p.y >= 0 && p.x < structure.cols && p.y < structure.rows && structure.at<unsigned char>(p) == 255;
 }
 
 /// Not-free pixels beside free ones around an end of a contact, at most `reach` away.

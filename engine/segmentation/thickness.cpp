@@ -51,9 +51,8 @@ std::vector<RidgePixel> ridge_by_rising_clearance(const cv::Mat& clearance) {
       const float own = clearance.at<float>(y, x);
       if (own > 0 && !covered_from_uphill(clearance, x, y)) ridge.push_back({own, x, y});
     }
-  std::stable_sort(ridge.begin(), ridge.end(), [](const RidgePixel& one, const RidgePixel& two) {
-    return one.clearance < two.clearance;
-  });
+  std::stable_sort(ridge.begin(), ridge.end(),
+                   [](const RidgePixel& one, const RidgePixel& two) { return one.clearance < two.clearance; });
   return ridge;
 }
 
@@ -62,8 +61,8 @@ std::vector<RidgePixel> ridge_by_rising_clearance(const cv::Mat& clearance) {
 cv::Mat local_thickness(const cv::Mat& clearance) {
   cv::Mat thickness = clearance.clone();
   for (const RidgePixel& pixel : ridge_by_rising_clearance(clearance)) {
-    // In rising order, so that larger discs paint over smaller ones. Half a pixel more makes up for the covered discs that
-    // were left out and cannot reach beyond a wall.
+    // In rising order, so that larger discs paint over smaller ones. Half a pixel more makes up for the covered discs
+    // that were left out and cannot reach beyond a wall.
     const double squared = (pixel.clearance + 0.5) * (pixel.clearance + 0.5);
     const int reach = static_cast<int>(std::sqrt(std::max(0.0, squared)));
     for (int dy = -reach; dy <= reach; ++dy) {

@@ -7,9 +7,7 @@
 
 namespace smokemap {
 
-double ZoneContact::chord() const {
-  return std::min(std::hypot(box.width, box.height), static_cast<double>(length));
-}
+double ZoneContact::chord() const { return std::min(std::hypot(box.width, box.height), static_cast<double>(length)); }
 
 void ZoneContact::add(const cv::Point& pixel) {
   const cv::Rect own(pixel.x, pixel.y, 1, 1);

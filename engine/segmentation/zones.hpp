@@ -24,7 +24,8 @@ struct Zone {
   std::map<int, ZoneContact> contacts;
 };
 
-/// Zones of free space and who touches whom; shrinks by merging. Zone ids are those of the label image it was made from.
+/// Zones of free space and who touches whom; shrinks by merging. Zone ids are those of the label image it was made
+/// from.
 class ZoneGraph {
  public:
   /// @param labels  CV_32SC1, 0 = not free, ids from 1

@@ -32,8 +32,10 @@ Transferred Carrier::to_map(const Place& place) const {
       t.p = place.p, t.sigma = kTapSigmaM, t.confidence = 1;
       return t;
     }
-    case PlaceFrame::kLayoutPx: return from_layout(place.p, place.revision);
-    case PlaceFrame::kSketchPx: return from_sketch(place.p);
+    case PlaceFrame::kLayoutPx:
+      return from_layout(place.p, place.revision);
+    case PlaceFrame::kSketchPx:
+      return from_sketch(place.p);
   }
   return nowhere("unknown kind of place");
 }
@@ -52,7 +54,8 @@ Transferred Carrier::from_layout(const Point2& p_px, int frame_revision) const {
 }
 
 Transferred Carrier::from_sketch(const Point2& p_px) const {
-  if (!sketch_.to_plan) return nowhere(sketch_.no_transfer.empty() ? "the sketch was not read yet" : sketch_.no_transfer);
+  if (!sketch_.to_plan)
+    return nowhere(sketch_.no_transfer.empty() ? "the sketch was not read yet" : sketch_.no_transfer);
   const Transferred on_plan = (*sketch_.to_plan)(p_px);
   if (!on_plan.p) return on_plan;
   const double scale = sketch_.pixels_per_layout_px;
@@ -60,7 +63,8 @@ Transferred Carrier::from_sketch(const Point2& p_px) const {
   if (!t.p) return t;
   t.sigma = std::hypot(t.sigma, on_plan.sigma / scale * board_.layout->layout.frame().metres_per_pixel);
   t.confidence *= on_plan.confidence;
-  if (sketch_.match && sketch_.match->matching.doubtful && t.reason.empty()) t.reason = "the match of sketch and plan is doubtful";
+  if (sketch_.match && sketch_.match->matching.doubtful && t.reason.empty())
+    t.reason = "the match of sketch and plan is doubtful";
   return t;
 }
 

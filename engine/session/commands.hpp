@@ -13,8 +13,8 @@
 
 namespace smokemap {
 
-/// What people do, as values. The server stores a command before the engine gets it; replaying the log rebuilds the state.
-/// Every command is idempotent: the same one twice changes nothing the second time.
+/// What people do, as values. The server stores a command before the engine gets it; replaying the log rebuilds the
+/// state. Every command is idempotent: the same one twice changes nothing the second time.
 
 /// Makes this the plan of the floor. Replaces an earlier one; `plan_id` is the content hash of its picture.
 struct SetLayout {
@@ -56,8 +56,8 @@ struct SetSketchSheet {
 };
 /// Regions are renumbered whenever the drawing changes, so a verdict is kept by the two places that were tapped.
 struct JudgePair {
-  Point2 p_sketch_px = Point2::Zero();  ///< inside the region of the sketch
-  Point2 p_layout_px = Point2::Zero();  ///< inside the region of the plan
+  Point2 p_sketch_px = Point2::Zero();    ///< inside the region of the sketch
+  Point2 p_layout_px = Point2::Zero();    ///< inside the region of the plan
   Verdict verdict = Verdict::kConfirmed;  ///< kProposed takes an earlier verdict on these two regions back
 };
 /// Adds the point, or moves and relabels the one with this id.
@@ -83,8 +83,8 @@ struct SetExploring {
   bool exploring = true;
 };
 
-using Command = std::variant<SetLayout, SetStart, AddAnchor, RemoveAnchor, JudgeWall, AddStroke, EraseStroke, ClearSketch,
-                             SetSketchSheet, JudgePair, PlacePoi, RemovePoi, SetGoal, CancelGoal, EmergencyStop,
-                             SetExploring>;
+using Command =
+    std::variant<SetLayout, SetStart, AddAnchor, RemoveAnchor, JudgeWall, AddStroke, EraseStroke, ClearSketch,
+                 SetSketchSheet, JudgePair, PlacePoi, RemovePoi, SetGoal, CancelGoal, EmergencyStop, SetExploring>;
 
 }  // namespace smokemap

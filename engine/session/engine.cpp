@@ -116,7 +116,9 @@ class Engine::Impl {
       std::string map_maker;
       {
         std::unique_lock lock(core_mutex_);
-        if (!changed_.wait(lock, stop, [&] { return graph_revision_ != graph_done || core_.plan_revision() != plan_done; })) return;
+        if (!changed_.wait(lock, stop,
+                           [&] { return graph_revision_ != graph_done || core_.plan_revision() != plan_done; }))
+          return;
         graph_done = graph_revision_, plan_done = core_.plan_revision();
         input = core_.merge_input(graph_);
         map_maker = map_maker_;
@@ -137,7 +139,8 @@ class Engine::Impl {
         if (!changed_.wait(lock, stop, [&] { return core_.sketch_revision() != done; })) return;
         for (int seen = -1; seen != core_.sketch_revision() && !stop.stop_requested();) {  // until the pen rests
           seen = core_.sketch_revision();
-          changed_.wait_for(lock, stop, period(params_.sketch_delay_s), [&] { return core_.sketch_revision() != seen; });
+          changed_.wait_for(lock, stop, period(params_.sketch_delay_s),
+                            [&] { return core_.sketch_revision() != seen; });
         }
         order = core_.sketch_order();
         done = order.revision;

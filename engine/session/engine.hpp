@@ -12,9 +12,9 @@
 namespace smokemap {
 
 struct EngineParams {
-  double tick_s = 0.1;          ///< robots are steered and snapshots made this often
-  double merge_period_s = 1.0;  ///< the graph is solved at most this often
-  double sketch_delay_s = 0.4;  ///< after the last stroke
+  double tick_s = 0.1;             ///< robots are steered and snapshots made this often
+  double merge_period_s = 1.0;     ///< the graph is solved at most this often
+  double sketch_delay_s = 0.4;     ///< after the last stroke
   std::size_t sensor_queue = 256;  ///< items; the oldest are dropped and counted
   FleetParams fleet;
   Result<Ok> validate() const;
@@ -22,8 +22,9 @@ struct EngineParams {
 
 /// The facade of everything that understands maps: commands and sensor data in, immutable snapshots out.
 ///
-/// Thread-safe: any thread may call any member. Four threads work behind it: sensing (SLAM), steering (ticks), merging (the
-/// Auto-Complete Graph) and reading the sketch. Sensor queues are bounded and drop the oldest, commands never drop.
+/// Thread-safe: any thread may call any member. Four threads work behind it: sensing (SLAM), steering (ticks), merging
+/// (the Auto-Complete Graph) and reading the sketch. Sensor queues are bounded and drop the oldest, commands never
+/// drop.
 class Engine {
  public:
   using SnapshotListener = std::function<void(std::shared_ptr<const Snapshot>)>;
@@ -33,8 +34,8 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  /// Applies the command. Errors are about the command itself (unknown goal, no plan to place on): nothing changed then.
-  /// An emergency stop reaches the robots before this returns.
+  /// Applies the command. Errors are about the command itself (unknown goal, no plan to place on): nothing changed
+  /// then. An emergency stop reaches the robots before this returns.
   /// @param origin kHistory while a stored log is replayed: goals do not start robots, and where a robot stood is not
   ///               believed any more
   Result<Ok> apply(const Command& command, Origin origin = Origin::kLive);
@@ -43,7 +44,8 @@ class Engine {
   void add_sweep(const RadarSweep& sweep);
   void add_odometry(const Odometry& odometry);
 
-  /// The pixel of the plan (layout_px) under a place on the map; nothing while no plan is aligned, or the plan does not fit.
+  /// The pixel of the plan (layout_px) under a place on the map; nothing while no plan is aligned, or the plan does not
+  /// fit.
   std::optional<Point2> place_on_plan(const Point2& p_map) const;
 
   /// The latest; never null.

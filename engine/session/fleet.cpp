@@ -105,9 +105,12 @@ Goal* Fleet::next_goal(Robot& robot, Whiteboard& board, const Carrier& carrier) 
 void Fleet::take_target(Robot& robot, Stamp now, Goal* goal, const Carrier& carrier, bool explores) {
   if (goal) {
     const Point2 p = *carrier.to_map(goal->place).p;
-    if (robot.status.goal_id != goal->id || !robot.pilot.target()) take_goal(robot, *goal, p);
-    else if (robot.detour) (void)look_for_way(robot, now, *goal, p);
-    else robot.pilot.move_target(p);
+    if (robot.status.goal_id != goal->id || !robot.pilot.target())
+      take_goal(robot, *goal, p);
+    else if (robot.detour)
+      (void)look_for_way(robot, now, *goal, p);
+    else
+      robot.pilot.move_target(p);
     return;
   }
   robot.detour = false;
@@ -122,7 +125,8 @@ void Fleet::take_target(Robot& robot, Stamp now, Goal* goal, const Carrier& carr
   }
   if (robot.pilot.target() || !map_ || to_seconds(now - robot.idle_since) < params_.explore_pause_s) return;
   robot.idle_since = now;
-  if (const auto frontier = best_frontier(*map_, robot.status.T_map_robot.translation(), robot.avoided, params_.frontier))
+  if (const auto frontier =
+          best_frontier(*map_, robot.status.T_map_robot.translation(), robot.avoided, params_.frontier))
     robot.pilot.set_target(frontier->target);
   else
     robot.status.note = "everything that can be reached was seen";
@@ -137,7 +141,8 @@ void Fleet::take_goal(Robot& robot, Goal& goal, const Point2& p_map) {
 
 bool Fleet::look_for_way(Robot& robot, Stamp now, const Goal& goal, const Point2& p_map) {
   const Point2 here = robot.status.T_map_robot.translation();
-  const bool there = robot.detour && (robot.last_detour == PilotState::kArrived || robot.last_detour == PilotState::kGivenUp);
+  const bool there =
+      robot.detour && (robot.last_detour == PilotState::kArrived || robot.last_detour == PilotState::kGivenUp);
   if (robot.detour && !there && to_seconds(now - robot.looked_at) < params_.look_again_s) return true;
   robot.looked_at = now;
   if (!map_) return false;
@@ -164,15 +169,22 @@ void Fleet::settle_goal(Robot& robot, Stamp now, Goal* goal, const Carrier& carr
     return;
   }
   const bool no_way = robot.last.state == PilotState::kBlocked && robot.last.path.points.empty() && map_;
-  if (no_way && robot.last.reason == kNoWayKnown && look_for_way(robot, now, *goal, *carrier.to_map(goal->place).p)) return;
+  if (no_way && robot.last.reason == kNoWayKnown && look_for_way(robot, now, *goal, *carrier.to_map(goal->place).p))
+    return;
   switch (robot.last.state) {
-    case PilotState::kArrived: goal->state = GoalState::kArrived, goal->reason.clear(); break;
+    case PilotState::kArrived:
+      goal->state = GoalState::kArrived, goal->reason.clear();
+      break;
     case PilotState::kGivenUp:
       goal->state = goal->state == GoalState::kSent ? GoalState::kRefused : GoalState::kFailed;
       goal->reason = robot.last.reason;
       break;
-    case PilotState::kDriving: goal->state = GoalState::kDriving, goal->reason.clear(); break;
-    default: goal->reason = robot.last.reason; break;
+    case PilotState::kDriving:
+      goal->state = GoalState::kDriving, goal->reason.clear();
+      break;
+    default:
+      goal->reason = robot.last.reason;
+      break;
   }
 }
 

@@ -77,8 +77,8 @@ class Fleet {
     PilotOutput last;
     std::vector<Point2> avoided;  ///< frontiers that could not be reached, or were
     PilotState last_detour = PilotState::kIdle;
-    bool detour = false;          ///< no way to the goal is known: the pilot looks for one
-    Stamp looked_at = 0;          ///< when a way to the goal was last asked for
+    bool detour = false;  ///< no way to the goal is known: the pilot looks for one
+    Stamp looked_at = 0;  ///< when a way to the goal was last asked for
     Stamp idle_since = 0;
     bool ever_localized = false;
   };

@@ -17,8 +17,8 @@ namespace smokemap {
 
 using SensorItem = std::variant<LaserScan, Odometry, RadarSweep>;
 
-/// SLAM of every robot. The first robot heard makes the map; others are followed in frames of their own and are shown as
-/// not localised. Runs on one thread; no other state.
+/// SLAM of every robot. The first robot heard makes the map; others are followed in frames of their own and are shown
+/// as not localised. Runs on one thread; no other state.
 class Mapper {
  public:
   /// @return what the fleet should know, if the item said something new

@@ -10,7 +10,9 @@ bool same_start(const std::optional<PlanStart>& a, const std::optional<PlanStart
   return !a || (a->T_layout_robot.vector() == b->T_layout_robot.vector() && a->sigma_m == b->sigma_m);
 }
 
-bool same_anchor(const AddAnchor& a, const AddAnchor& b) { return a.p_layout_px == b.p_layout_px && a.p_map == b.p_map; }
+bool same_anchor(const AddAnchor& a, const AddAnchor& b) {
+  return a.p_layout_px == b.p_layout_px && a.p_map == b.p_map;
+}
 
 }  // namespace
 
@@ -20,7 +22,8 @@ MergedMap plan_alone(const LayoutMap& layout, const std::optional<PlanStart>& st
   merged.layout_to_map = Deformation::from_similarity({1.0, T_map_layout});
   const PixelFrame frame = layout.frame();
   for (const LayoutCorner& corner : layout.corners)
-    merged.corners.push_back({corner.p_px, T_map_layout * frame.to_metres(corner.p_px), start ? start->sigma_m + 0.5 : 1.0, false});
+    merged.corners.push_back(
+        {corner.p_px, T_map_layout * frame.to_metres(corner.p_px), start ? start->sigma_m + 0.5 : 1.0, false});
   for (std::size_t i = 0; i < layout.walls.size(); ++i) {
     MergedWall wall;
     wall.layout_wall = static_cast<int>(i);
@@ -52,9 +55,11 @@ void Merger::take_plan(const MergeInput& input) {
     (void)acg_.judge_wall(wall, verdict == WallVerdict::kGone ? WallJudgement::kGone : WallJudgement::kThere);
 }
 
-std::shared_ptr<const MergedMap> Merger::merge(const MergeInput& input, const Progress& progress, std::string& complaint) {
+std::shared_ptr<const MergedMap> Merger::merge(const MergeInput& input, const Progress& progress,
+                                               std::string& complaint) {
   if (input.graph->nodes.empty())
-    return std::make_shared<const MergedMap>(input.layout ? plan_alone(input.layout->layout, input.start) : MergedMap{});
+    return std::make_shared<const MergedMap>(input.layout ? plan_alone(input.layout->layout, input.start)
+                                                          : MergedMap{});
   auto merged = acg_.update(*input.graph, progress);
   if (merged) return std::make_shared<const MergedMap>(std::move(*merged));
   complaint = merged.error().message;
@@ -71,7 +76,8 @@ MergeResult Merger::run(const MergeInput& input, const Progress& progress) {
   std::vector<Pose2> T_map_nodes;
   for (const StampedPose& pose : merged->trajectory) T_map_nodes.push_back(pose.T_map_robot);
   const PoseGraph& graph = *input.graph;
-  for (std::size_t i = T_map_nodes.size(); i < graph.nodes.size(); ++i) T_map_nodes.push_back(graph.nodes[i].T_map_robot);
+  for (std::size_t i = T_map_nodes.size(); i < graph.nodes.size(); ++i)
+    T_map_nodes.push_back(graph.nodes[i].T_map_robot);
   T_map_nodes.resize(graph.nodes.size());
   if (!graph.nodes.empty()) result.T_map_slam = T_map_nodes.back() * graph.nodes.back().T_map_robot.inverse();
   renderer_.update(graph, T_map_nodes);

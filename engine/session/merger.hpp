@@ -27,8 +27,8 @@ struct MergeResult {
   std::shared_ptr<const MergedMap> merged;
   std::shared_ptr<const OccupancyGrid> sensed;
   std::shared_ptr<const CostMap> cost_map;  ///< null when nothing is known yet
-  Pose2 T_map_slam;       ///< correction of the newest node; what comes after it moves along
-  std::string complaint;  ///< the last solve gave no usable answer; the map is the one before
+  Pose2 T_map_slam;                         ///< correction of the newest node; what comes after it moves along
+  std::string complaint;                    ///< the last solve gave no usable answer; the map is the one before
 };
 
 /// Plan and pose graph -> merged map, occupancy, ground for navigation. Slow (up to a second): runs beside the engine.

@@ -76,7 +76,8 @@ std::optional<Point2> SessionCore::place_on_plan(const Point2& p_map) const {
 std::vector<Alert> SessionCore::alerts() const {
   std::vector<Alert> alerts;
   if (start_is_old_ && !start_)
-    alerts.push_back({"old-start", "Where the robot stands on the plan is only known from before the restart: say it again.", true});
+    alerts.push_back(
+        {"old-start", "Where the robot stands on the plan is only known from before the restart: say it again.", true});
   if (board_.layout && !board_.layout->layout.scale)
     alerts.push_back({"no-scale", "The plan has no scale yet: a guess is used.", false});
   if (merged_->fit.verdict == "does not fit")

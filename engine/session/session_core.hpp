@@ -15,8 +15,8 @@ namespace smokemap {
 
 enum class Origin { kLive, kHistory };
 
-/// The state of a session and the order of its stages, without threads: commands, sensor reports and results of slow work
-/// in, work orders and snapshots out. Engine runs it behind threads; tests run it step by step.
+/// The state of a session and the order of its stages, without threads: commands, sensor reports and results of slow
+/// work in, work orders and snapshots out. Engine runs it behind threads; tests run it step by step.
 class SessionCore {
  public:
   SessionCore(const FleetParams& params, std::shared_ptr<RobotCommands> commands);

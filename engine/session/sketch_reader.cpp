@@ -23,7 +23,8 @@ std::vector<RegionView> views_of(const Segmentation& segmentation, double scale)
 }
 
 /// Verdicts by place -> verdicts by label, the latest word on a pair winning.
-std::vector<RegionPair> by_label(const std::vector<PairVerdict>& verdicts, const Segmentation& sketch, const PlanRegions& plan) {
+std::vector<RegionPair> by_label(const std::vector<PairVerdict>& verdicts, const Segmentation& sketch,
+                                 const PlanRegions& plan) {
   std::map<std::pair<int, int>, Verdict> latest;
   for (const PairVerdict& verdict : verdicts) {
     const int a = label_at(sketch, verdict.p_sketch_px, kTapReachPx);
@@ -68,7 +69,8 @@ const PlanRegions* SketchReader::plan_regions(const std::shared_ptr<const Layout
   plan_.reset();
   if (!layout) return nullptr;
   PlanRegions plan;
-  plan.pixels_per_layout_px = std::min(1.0, kPlanLongSidePx / std::max(layout->layout.width_px, layout->layout.height_px));
+  plan.pixels_per_layout_px =
+      std::min(1.0, kPlanLongSidePx / std::max(layout->layout.width_px, layout->layout.height_px));
   const auto free_space = layout_free_space(layout->layout, plan.pixels_per_layout_px);
   if (!free_space) return nullptr;
   auto segmentation = segment(*free_space, matching_segmentation_params());

@@ -16,9 +16,9 @@ namespace smokemap {
 
 /// What the sketch is matched against; read once a plan.
 struct PlanRegions {
-  Segmentation segmentation;       ///< of the plan's free space, scaled
+  Segmentation segmentation;  ///< of the plan's free space, scaled
   double pixels_per_layout_px = 1;
-  std::vector<RegionView> views;   ///< layout_px
+  std::vector<RegionView> views;  ///< layout_px
 };
 
 /// What one reading of the sketch gives.
@@ -30,8 +30,8 @@ struct SketchReading {
   std::string no_transfer;  ///< why there is none, for people
 };
 
-/// Sketch and plan -> regions, correspondences and the way for points. Slow (up to half a second): runs beside the engine.
-/// Keeps the plan's regions between calls.
+/// Sketch and plan -> regions, correspondences and the way for points. Slow (up to half a second): runs beside the
+/// engine. Keeps the plan's regions between calls.
 class SketchReader {
  public:
   SketchReading read(const SketchMap& sketch, const std::shared_ptr<const LayoutView>& layout,

@@ -26,7 +26,7 @@ struct RobotStatus {
   LinkQuality link = LinkQuality::kLost;
   Stamp last_heard = 0;  ///< server clock
   double speed_mps = 0;
-  bool stopped = false;    ///< emergency stop engaged
+  bool stopped = false;  ///< emergency stop engaged
   bool exploring = false;
   std::string goal_id;
   std::vector<Point2> path_map;
@@ -77,15 +77,16 @@ struct LayoutView {
   double turn_rad = 0;  ///< of the plan in the map: heading of the picture's +x
 };
 
-/// Everything there is to show, at one moment. Immutable; parts that did not change are shared with the snapshot before.
+/// Everything there is to show, at one moment. Immutable; parts that did not change are shared with the snapshot
+/// before.
 struct Snapshot {
   std::uint64_t revision = 0;
-  Stamp time = 0;  ///< server clock
-  std::shared_ptr<const LayoutView> layout;        ///< null without a plan
-  std::shared_ptr<const MergedMap> merged;         ///< never null
-  std::shared_ptr<const OccupancyGrid> sensed;     ///< what sensors saw, corrected; never null, may be empty
-  std::shared_ptr<const SketchView> sketch;        ///< never null
-  std::shared_ptr<const MatchView> match;          ///< null without sketch or plan
+  Stamp time = 0;                               ///< server clock
+  std::shared_ptr<const LayoutView> layout;     ///< null without a plan
+  std::shared_ptr<const MergedMap> merged;      ///< never null
+  std::shared_ptr<const OccupancyGrid> sensed;  ///< what sensors saw, corrected; never null, may be empty
+  std::shared_ptr<const SketchView> sketch;     ///< never null
+  std::shared_ptr<const MatchView> match;       ///< null without sketch or plan
   std::vector<RobotStatus> robots;
   std::vector<PoiView> pois;
   std::vector<GoalView> goals;

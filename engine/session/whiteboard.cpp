@@ -20,8 +20,7 @@ Result<Ok> named(const std::string& id, const char* what) {
 }
 
 Result<Ok> check_layout(const LayoutMap& layout) {
-  if (layout.width_px <= 0 || layout.height_px <= 0)
-    return fail(Errc::kInvalidArgument, "the plan has no size");
+  if (layout.width_px <= 0 || layout.height_px <= 0) return fail(Errc::kInvalidArgument, "the plan has no size");
   const auto corners = static_cast<int>(layout.corners.size());
   for (const LayoutCorner& corner : layout.corners)
     if (const auto ok = finite(corner.p_px, "a corner of the plan"); !ok) return ok;
@@ -106,8 +105,10 @@ Result<Ok> Whiteboard::do_apply(const RemoveAnchor& command) {
 Result<Ok> Whiteboard::do_apply(const JudgeWall& command) {
   if (!layout || command.layout_wall < 0 || command.layout_wall >= static_cast<int>(layout->layout.walls.size()))
     return fail(Errc::kNotFound, "the plan has no wall " + std::to_string(command.layout_wall));
-  if (command.verdict == WallVerdict::kNone) wall_verdicts.erase(command.layout_wall);
-  else wall_verdicts[command.layout_wall] = command.verdict;
+  if (command.verdict == WallVerdict::kNone)
+    wall_verdicts.erase(command.layout_wall);
+  else
+    wall_verdicts[command.layout_wall] = command.verdict;
   ++revisions.plan;
   return Ok{};
 }
@@ -128,9 +129,11 @@ Result<Ok> Whiteboard::do_apply(const AddStroke& command) {
 }
 
 Result<Ok> Whiteboard::do_apply(const EraseStroke& command) {
-  const bool known = std::any_of(strokes_.begin(), strokes_.end(), [&](const Stroke& s) { return s.id == command.stroke_id; });
+  const bool known =
+      std::any_of(strokes_.begin(), strokes_.end(), [&](const Stroke& s) { return s.id == command.stroke_id; });
   if (!known) return fail(Errc::kNotFound, "there is no such stroke");
-  const bool changed = command.restore ? erased_.erase(command.stroke_id) > 0 : erased_.insert(command.stroke_id).second;
+  const bool changed =
+      command.restore ? erased_.erase(command.stroke_id) > 0 : erased_.insert(command.stroke_id).second;
   if (changed) ++revisions.sketch;
   return Ok{};
 }
@@ -157,7 +160,8 @@ Result<Ok> Whiteboard::do_apply(const JudgePair& command) {
   std::erase_if(pair_verdicts, [&](const PairVerdict& v) {
     return near(v.p_sketch_px, command.p_sketch_px) && near(v.p_layout_px, command.p_layout_px);
   });
-  // Also kProposed is kept: it takes back whatever was said before about the same two regions (SketchReader resolves it).
+  // Also kProposed is kept: it takes back whatever was said before about the same two regions (SketchReader resolves
+  // it).
   pair_verdicts.push_back({command.p_sketch_px, command.p_layout_px, command.verdict});
   ++revisions.sketch;
   return Ok{};
@@ -168,7 +172,8 @@ Result<Ok> Whiteboard::do_apply(const PlacePoi& command) {
   if (const auto ok = named(poi.id, "a point of interest"); !ok) return ok;
   if (const auto ok = stamp_frame(poi.place); !ok) return ok;
   if (poi.label.size() > 200) return fail(Errc::kTooLarge, "a label has at most 200 characters");
-  if (pois.size() >= kMostPois && !pois.contains(poi.id)) return fail(Errc::kTooLarge, "there are 5000 points of interest");
+  if (pois.size() >= kMostPois && !pois.contains(poi.id))
+    return fail(Errc::kTooLarge, "there are 5000 points of interest");
   if (const auto it = pois.find(poi.id); it != pois.end()) poi.created = it->second.created;
   pois[poi.id] = std::move(poi);
   return Ok{};
@@ -185,7 +190,8 @@ Result<Ok> Whiteboard::do_apply(const SetGoal& command) {
   Goal goal = command.goal;
   if (const auto ok = named(goal.id, "a goal"); !ok) return ok;
   if (goal.robot.empty()) return fail(Errc::kInvalidArgument, "a goal needs a robot");
-  if (goal.heading_rad && !std::isfinite(*goal.heading_rad)) return fail(Errc::kInvalidArgument, "the heading is not a number");
+  if (goal.heading_rad && !std::isfinite(*goal.heading_rad))
+    return fail(Errc::kInvalidArgument, "the heading is not a number");
   if (find_goal(goal.id)) return Ok{};
   if (goals.size() >= kMostGoals) return fail(Errc::kTooLarge, "there were 1000 goals");
   if (const auto ok = stamp_frame(goal.place); !ok) return ok;

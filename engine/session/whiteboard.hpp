@@ -40,8 +40,8 @@ class Whiteboard {
   std::map<int, WallVerdict> wall_verdicts;
   std::vector<PairVerdict> pair_verdicts;
   std::map<std::string, PointOfInterest> pois;
-  std::vector<Goal> goals;               ///< in the order in which they are to be driven
-  std::set<std::string> stopped;         ///< robots under emergency stop
+  std::vector<Goal> goals;        ///< in the order in which they are to be driven
+  std::set<std::string> stopped;  ///< robots under emergency stop
   bool all_stopped = false;
   std::map<std::string, bool> exploring;
   WhiteboardRevisions revisions;

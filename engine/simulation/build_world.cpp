@@ -10,7 +10,8 @@
 namespace smokemap {
 namespace {
 
-constexpr double kPoke = 1e-6;  ///< faces reach so far into the solid behind a corner: they cross there instead of just touching
+constexpr double kPoke =
+    1e-6;  ///< faces reach so far into the solid behind a corner: they cross there instead of just touching
 
 /// The share [from, to] of `edge` strictly inside the rectangle; from >= to if none.
 std::pair<double, double> share_inside(const Segment2& edge, const WallSolid& solid) {
@@ -70,8 +71,8 @@ std::vector<WorldSegment> merge_faces(std::vector<WorldSegment> pieces) {
       u = -u;
     }
     const Point2 n(-u.y(), u.x());
-    faces.push_back({std::lround(1e6 * std::atan2(u.y(), u.x())), std::lround(1e6 * n.dot(piece.line.a)), piece.material,
-                     u.dot(piece.line.a), u.dot(piece.line.b), piece.line});
+    faces.push_back({std::lround(1e6 * std::atan2(u.y(), u.x())), std::lround(1e6 * n.dot(piece.line.a)),
+                     piece.material, u.dot(piece.line.a), u.dot(piece.line.b), piece.line});
   }
   std::sort(faces.begin(), faces.end(), [](const OnLine& a, const OnLine& b) {
     return std::tuple(a.key(), a.from, a.to) < std::tuple(b.key(), b.from, b.to);

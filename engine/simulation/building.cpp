@@ -30,7 +30,8 @@ std::vector<int> corners_along(const std::vector<Point2>& corners, int a, int b)
 }
 
 /// Where a gap of `width_m` around `p` fits into the wall, as shares of its length.
-Result<std::pair<double, double>> fit_gap(const FloorPlan& plan, int wall, const Point2& p, double width_m, double jamb_m) {
+Result<std::pair<double, double>> fit_gap(const FloorPlan& plan, int wall, const Point2& p, double width_m,
+                                          double jamb_m) {
   const Segment2 line = plan.wall_line(wall);
   const auto& ends = plan.walls[static_cast<std::size_t>(wall)];
   const auto margin = [&](int corner) {
@@ -91,7 +92,8 @@ std::vector<Segment2> FloorPlan::wall_pieces(int wall) const {
 
 Polygon FloorPlan::outline(int room) const {
   Polygon ring;
-  for (const int corner : rooms[static_cast<std::size_t>(room)].ring) ring.push_back(corners[static_cast<std::size_t>(corner)]);
+  for (const int corner : rooms[static_cast<std::size_t>(room)].ring)
+    ring.push_back(corners[static_cast<std::size_t>(corner)]);
   return ring;
 }
 
@@ -108,7 +110,8 @@ std::pair<int, int> FloorPlan::rooms_beside(int wall) const {
     const std::vector<int>& ring = rooms[i].ring;
     for (std::size_t k = 0; k < ring.size(); ++k) {
       const int a = ring[k], b = ring[(k + 1) % ring.size()];
-      if (a == w.corner_a && b == w.corner_b) beside.first = static_cast<int>(i);   // counter-clockwise: room on the left
+      if (a == w.corner_a && b == w.corner_b)
+        beside.first = static_cast<int>(i);  // counter-clockwise: room on the left
       if (b == w.corner_a && a == w.corner_b) beside.second = static_cast<int>(i);
     }
   }
@@ -120,7 +123,8 @@ Result<FloorPlan> wall_in(const std::vector<RoomOutline>& rooms, const WallStyle
   std::vector<std::vector<int>> rings;
   for (const RoomOutline& room : rooms) {
     if (room.outline.size() < 3 || signed_area(room.outline) <= 0)
-      return fail(Errc::kInvalidArgument, "room " + room.name + " is no counter-clockwise ring of three or more corners");
+      return fail(Errc::kInvalidArgument,
+                  "room " + room.name + " is no counter-clockwise ring of three or more corners");
     rings.emplace_back();
     for (const Point2& p : room.outline) rings.back().push_back(corner_at(plan.corners, p));
   }
@@ -136,7 +140,8 @@ Result<FloorPlan> wall_in(const std::vector<RoomOutline>& rooms, const WallStyle
         if (is_new)
           plan.walls.push_back({pieces[j], pieces[j + 1], style.outer_thickness_m, style.outer_material, true});
         else  // seen from its second room
-          plan.walls[static_cast<std::size_t>(known->second)] = {a, b, style.inner_thickness_m, style.inner_material, false};
+          plan.walls[static_cast<std::size_t>(known->second)] = {a, b, style.inner_thickness_m, style.inner_material,
+                                                                 false};
       }
     }
     plan.rooms.push_back(std::move(room));

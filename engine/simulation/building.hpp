@@ -25,10 +25,10 @@ struct PlanDoor {
   int wall = 0;
   double from = 0;
   double to = 0;
-  bool hinge_at_to = false;   ///< else at `from`
-  bool swings_left = true;    ///< of the direction corner_a -> corner_b
-  bool has_leaf = false;      ///< stands in the true world; without one the gap is an open passage
-  double open_rad = 0;        ///< how far the leaf stands open in the true world
+  bool hinge_at_to = false;  ///< else at `from`
+  bool swings_left = true;   ///< of the direction corner_a -> corner_b
+  bool has_leaf = false;     ///< stands in the true world; without one the gap is an open passage
+  double open_rad = 0;       ///< how far the leaf stands open in the true world
 };
 
 /// Drawn in plans only: a robot's sensors look at the wall below the sill.
@@ -44,8 +44,8 @@ struct PlanRoom {
   bool corridor = false;
 };
 
-/// A storey as a graph of walls, in metres, y up. The same type holds the true building (frame `world`) and a plan of it,
-/// right or wrong.
+/// A storey as a graph of walls, in metres, y up. The same type holds the true building (frame `world`) and a plan of
+/// it, right or wrong.
 struct FloorPlan {
   std::string title;
   std::vector<Point2> corners;
@@ -94,9 +94,9 @@ Result<Ok> add_window(FloorPlan& plan, const Point2& p, double width_m);
 SegmentWorld build_world(const FloorPlan& plan);
 
 /// Small fixed buildings for tests. All have their lower left outer corner near (0, 0).
-FloorPlan one_room_building();       ///< 6 x 4 m, no door
-FloorPlan two_room_building();       ///< two 4 x 4 m rooms, a door between
-FloorPlan corridor_building();       ///< a 14 x 2 m corridor, three rooms on either side
-FloorPlan slanted_building();        ///< three rooms, walls at 30 degrees to one another: nothing Manhattan
+FloorPlan one_room_building();  ///< 6 x 4 m, no door
+FloorPlan two_room_building();  ///< two 4 x 4 m rooms, a door between
+FloorPlan corridor_building();  ///< a 14 x 2 m corridor, three rooms on either side
+FloorPlan slanted_building();   ///< three rooms, walls at 30 degrees to one another: nothing Manhattan
 
 }  // namespace smokemap

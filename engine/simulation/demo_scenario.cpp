@@ -54,7 +54,8 @@ double thickest_smoke(const SmokeField& smoke, const std::vector<Point2>& path) 
 }
 
 /// The farthest room whose way leads through haze but not through dense smoke; the clearest way if there is none.
-const Way& choose_goal(const std::vector<Way>& ways, const SmokeField& smoke, const SegmentWorld& world, const Point2& start) {
+const Way& choose_goal(const std::vector<Way>& ways, const SmokeField& smoke, const SegmentWorld& world,
+                       const Point2& start) {
   constexpr double kHaze = 0.4;  // visibility of about 8 m
   const Way* clearest = &ways.back();
   for (const Way& way : ways) {

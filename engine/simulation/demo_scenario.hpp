@@ -20,21 +20,21 @@ struct StartHint {
   double heading_rad = 0;  ///< counter-clockwise from the picture's +x
 };
 
-/// A two-wing building (about 30 x 20 m) with a fire and smoke in part of the far wing, an evacuation plan of it that is wrong
-/// the way real ones are (10 % local stretch, one wall not drawn, one drawn that is gone), a robot at the entrance and the
-/// truth. The robot's first pose is the origin of `map`.
+/// A two-wing building (about 30 x 20 m) with a fire and smoke in part of the far wing, an evacuation plan of it that
+/// is wrong the way real ones are (10 % local stretch, one wall not drawn, one drawn that is gone), a robot at the
+/// entrance and the truth. The robot's first pose is the origin of `map`.
 struct DemoScenario {
   std::uint64_t seed = kDemoSeed;
-  FloorPlan building;               ///< frame world
+  FloorPlan building;  ///< frame world
   DistortedPlan plan;
   PlanPicture picture;
   TrueLayout truth;
   SimulatedWorld world;
   Pose2 T_world_start;
-  StartHint start;                  ///< with the error of a finger: about 0.2 m and 3 degrees
+  StartHint start;  ///< with the error of a finger: about 0.2 m and 3 degrees
   StartHint true_start;
   Point2 p_world_fire = Point2::Zero();
-  std::string far_room;             ///< a room that cannot be seen from the start; the way is hazy at most
+  std::string far_room;  ///< a room that cannot be seen from the start; the way is hazy at most
   Point2 p_world_far_room = Point2::Zero();
   Point2 far_room_px = Point2::Zero();  ///< the same place on the plan
 
@@ -46,13 +46,13 @@ struct DemoParams {
   RandomBuildingParams building = demo_building();
   PlanDistortionParams distortion = demo_distortion();
   bool fire = true;
-  double burning_s = 240;           ///< before the robot comes
-  double sigma_start_m = 0.15;      ///< of the start hint, per coordinate
+  double burning_s = 240;       ///< before the robot comes
+  double sigma_start_m = 0.15;  ///< of the start hint, per coordinate
   double sigma_start_rad = 0.05;
   Result<Ok> validate() const;
 
-  static RandomBuildingParams demo_building();     ///< a little furniture
-  static PlanDistortionParams demo_distortion();   ///< one wall missing, one phantom
+  static RandomBuildingParams demo_building();    ///< a little furniture
+  static PlanDistortionParams demo_distortion();  ///< one wall missing, one phantom
 };
 
 /// The same seed gives the same demo, byte for byte. Takes about 0.15 s. kInvalidArgument for bad parameters.

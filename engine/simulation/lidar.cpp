@@ -16,17 +16,21 @@ constexpr double kGlassShare = 0.15;  ///< of beams that a pane sends back unles
 
 float no_echo_value(const LidarParams& params) {
   switch (params.no_echo) {
-    case NoEcho::kInfinity: return std::numeric_limits<float>::infinity();
-    case NoEcho::kZero: return 0;
-    case NoEcho::kNan: return std::numeric_limits<float>::quiet_NaN();
-    case NoEcho::kMaxPlusOne: break;
+    case NoEcho::kInfinity:
+      return std::numeric_limits<float>::infinity();
+    case NoEcho::kZero:
+      return 0;
+    case NoEcho::kNan:
+      return std::numeric_limits<float>::quiet_NaN();
+    case NoEcho::kMaxPlusOne:
+      break;
   }
   return static_cast<float>(params.range_max_m + 1);
 }
 
 /// The surface that answers: panes let most light through.
-std::optional<RayHit> first_answer(const SegmentWorld& world, const Point2& origin, const Point2& direction, double limit_m,
-                                   std::mt19937_64& random) {
+std::optional<RayHit> first_answer(const SegmentWorld& world, const Point2& origin, const Point2& direction,
+                                   double limit_m, std::mt19937_64& random) {
   double passed = 0;
   for (int pane = 0; pane < 8; ++pane) {
     auto hit = world.cast(origin + passed * direction, direction, limit_m - passed);
@@ -64,8 +68,8 @@ struct Beam {
   double intensity = 0;
 };
 
-Beam shoot(const SegmentWorld& world, const SmokeField& smoke, const Point2& origin, double angle, const LidarParams& params,
-           std::vector<SmokePiece>& pieces, std::mt19937_64& random) {
+Beam shoot(const SegmentWorld& world, const SmokeField& smoke, const Point2& origin, double angle,
+           const LidarParams& params, std::vector<SmokePiece>& pieces, std::mt19937_64& random) {
   // The echo comes from one part of the beam: at an edge sometimes from the near side, sometimes from the far one.
   angle += params.beam_width_rad * (uniform01(random) - 0.5);
   const Point2 direction(std::cos(angle), std::sin(angle));
@@ -112,10 +116,14 @@ Result<Ok> LidarParams::validate() const {
 
 double reflectance(Material material) {
   switch (material) {
-    case Material::kBrick: return 0.4;
-    case Material::kWood: return 0.5;
-    case Material::kGlass: return 0.1;
-    case Material::kMetal: return 0.3;
+    case Material::kBrick:
+      return 0.4;
+    case Material::kWood:
+      return 0.5;
+    case Material::kGlass:
+      return 0.1;
+    case Material::kMetal:
+      return 0.3;
   }
   return 0.4;
 }

@@ -14,7 +14,8 @@ namespace {
 struct Open {
   double estimate;
   std::size_t cell;
-  bool operator<(const Open& other) const {  // the queue gives the largest: the smallest estimate, then the smallest cell
+  bool operator<(
+      const Open& other) const {  // the queue gives the largest: the smallest estimate, then the smallest cell
     return estimate != other.estimate ? estimate > other.estimate : cell > other.cell;
   }
 };

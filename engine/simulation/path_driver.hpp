@@ -12,7 +12,7 @@ namespace smokemap {
 
 struct PathDriverParams {
   double radius_m = 0.25;
-  double margin_m = 0.08;         ///< kept from walls besides the radius
+  double margin_m = 0.08;  ///< kept from walls besides the radius
   double cell_m = 0.1;
   double speed_mps = 0.5;
   double turn_rate_radps = 1.0;
@@ -34,7 +34,8 @@ class PathDriver {
 
   /// The way for a robot's centre, start and goal included. kDegenerate if there is none.
   Result<std::vector<Point2>> plan(const Point2& from, const Point2& to) const;
-  /// Takes on a list of places to visit, in order. Places that cannot be reached are left out; returns how many are left.
+  /// Takes on a list of places to visit, in order. Places that cannot be reached are left out; returns how many are
+  /// left.
   std::size_t visit(const Point2& from, const std::vector<Point2>& waypoints);
   /// What to tell the robot now; zero when everything was visited.
   VelocityCommand drive(const Pose2& T_world_robot);

@@ -15,10 +15,14 @@ constexpr int kShift = 6;  ///< binary digits behind the point
 }  // namespace
 
 PlanCanvas::PlanCanvas(int width_px, int height_px)
-    : width_(width_px), height_(height_px), big_(height_px * kBigger, width_px * kBigger, CV_8UC3, cv::Scalar::all(255)) {}
+    : width_(width_px),
+      height_(height_px),
+      big_(height_px * kBigger, width_px * kBigger, CV_8UC3, cv::Scalar::all(255)) {}
 
 cv::Point PlanCanvas::fixed(const Point2& p_px) const {
-  const auto digit = [](double v) { return static_cast<int>(std::lround(((v + 0.5) * kBigger - 0.5) * (1 << kShift))); };
+  const auto digit = [](double v) {
+    return static_cast<int>(std::lround(((v + 0.5) * kBigger - 0.5) * (1 << kShift)));
+  };
   return {digit(p_px.x()), digit(p_px.y())};
 }
 
@@ -58,8 +62,8 @@ void PlanCanvas::arrow(const Point2& from, const Point2& to, double width_px, co
   if (length <= 0) return;
   const Point2 u = way / length, side(-u.y(), u.x()), neck = to - head * u;
   const double half = width_px / 2;
-  fill({from - half * side, neck - half * side, neck - 0.6 * head * side, to, neck + 0.6 * head * side, neck + half * side,
-        from + half * side},
+  fill({from - half * side, neck - half * side, neck - 0.6 * head * side, to, neck + 0.6 * head * side,
+        neck + half * side, from + half * side},
        bgr);
 }
 
@@ -70,7 +74,8 @@ void PlanCanvas::text(const std::string& words, const Point2& p, double height_p
   const double scale = cv::getFontScaleFromHeight(face, static_cast<int>(std::lround(height_px * kBigger)), width);
   int below = 0;
   const cv::Size size = cv::getTextSize(words, face, scale, width, &below);
-  cv::Point at(static_cast<int>(std::lround((p.x() + 0.5) * kBigger)), static_cast<int>(std::lround((p.y() + 0.5) * kBigger)));
+  cv::Point at(static_cast<int>(std::lround((p.x() + 0.5) * kBigger)),
+               static_cast<int>(std::lround((p.y() + 0.5) * kBigger)));
   if (anchor == Anchor::kCenter) at.x -= size.width / 2;
   cv::putText(big_, words, at, face, scale, bgr, width, cv::LINE_AA);
 }

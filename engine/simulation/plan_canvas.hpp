@@ -19,12 +19,13 @@ class PlanCanvas {
   void disc(const Point2& center, double radius_px, const cv::Scalar& bgr);
   void line(const Point2& from, const Point2& to, double width_px, const cv::Scalar& bgr);
   /// Counter-clockwise as seen on the picture, angles from +x, y up.
-  void arc(const Point2& center, double radius_px, double from_rad, double to_rad, double width_px, const cv::Scalar& bgr);
+  void arc(const Point2& center, double radius_px, double from_rad, double to_rad, double width_px,
+           const cv::Scalar& bgr);
   void arrow(const Point2& from, const Point2& to, double width_px, const cv::Scalar& bgr);
   enum class Anchor { kLeft, kCenter };
   /// Baseline at `p`; `height_px` of a capital letter. Latin letters only.
-  void text(const std::string& words, const Point2& p, double height_px, const cv::Scalar& bgr, Anchor anchor = Anchor::kLeft,
-            bool bold = false);
+  void text(const std::string& words, const Point2& p, double height_px, const cv::Scalar& bgr,
+            Anchor anchor = Anchor::kLeft, bool bold = false);
 
   cv::Mat picture() const;  ///< BGR, 8 bit
   int width_px() const { return width_; }

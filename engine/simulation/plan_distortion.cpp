@@ -17,8 +17,8 @@ double piecewise(const std::vector<double>& from, const std::vector<double>& to,
   return to[i - 1] + (value - from[i - 1]) * (to[i] - to[i - 1]) / (from[i] - from[i - 1]);
 }
 
-/// Knots from a random phase below `low` to beyond `high`. Drawn again until the spread of the factors is what was asked
-/// for within a fifth: few intervals would otherwise often give a plan without error.
+/// Knots from a random phase below `low` to beyond `high`. Drawn again until the spread of the factors is what was
+/// asked for within a fifth: few intervals would otherwise often give a plan without error.
 PlanWarp::Axis random_axis(double low, double high, const PlanDistortionParams& params, std::mt19937_64& random) {
   PlanWarp::Axis axis;
   axis.knots.push_back(low - uniform(random, 0, params.knot_spacing_m));
@@ -54,7 +54,8 @@ class PlanEditor {
     const auto blocks = [&](const auto& gap) {
       return gap.wall == wall && gap.from < share + margin && gap.to > share - margin;
     };
-    if (share < 2 * margin || share > 1 - 2 * margin || std::any_of(plan.doors.begin(), plan.doors.end(), blocks)) return {};
+    if (share < 2 * margin || share > 1 - 2 * margin || std::any_of(plan.doors.begin(), plan.doors.end(), blocks))
+      return {};
     std::erase_if(plan.windows, blocks);
     const Segment2 line = plan.wall_line(wall);
     const auto corner = static_cast<int>(plan.corners.size());
@@ -167,7 +168,8 @@ void add_phantoms(PlanEditor& editor, const PlanDistortionParams& params, std::m
     const auto wall = static_cast<int>(i);
     const auto [left, right] = editor.plan.rooms_beside(wall);
     for (const int room : {left, right})
-      if (room >= 0 && !editor.plan.rooms[static_cast<std::size_t>(room)].corridor && editor.plan.wall_line(wall).length() > 2.4)
+      if (room >= 0 && !editor.plan.rooms[static_cast<std::size_t>(room)].corridor &&
+          editor.plan.wall_line(wall).length() > 2.4)
         places.emplace_back(room, wall);
   }
   std::vector<int> taken;
@@ -188,10 +190,12 @@ std::vector<int> remove_walls(PlanEditor& editor, const FloorPlan& building, con
   for (std::size_t i = 0; i < building.walls.size(); ++i) {
     const auto wall = static_cast<int>(i);
     const auto [left, right] = building.rooms_beside(wall);
-    const bool untouched = std::count(editor.source.begin(), editor.source.end(), wall) == 1 && editor.source[i] == wall &&
+    const bool untouched = std::count(editor.source.begin(), editor.source.end(), wall) == 1 &&
+                           editor.source[i] == wall &&
                            (editor.plan.wall_line(wall).length() == building.wall_line(wall).length());
     if (left < 0 || right < 0 || !untouched || building.wall_line(wall).length() < params.min_wall_m) continue;
-    if (building.rooms[static_cast<std::size_t>(left)].corridor || building.rooms[static_cast<std::size_t>(right)].corridor)
+    if (building.rooms[static_cast<std::size_t>(left)].corridor ||
+        building.rooms[static_cast<std::size_t>(right)].corridor)
       continue;
     candidates.push_back(wall);
   }
@@ -201,7 +205,8 @@ std::vector<int> remove_walls(PlanEditor& editor, const FloorPlan& building, con
     candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(pick));
   }
   std::sort(missing.begin(), missing.end());
-  for (auto wall = missing.rbegin(); wall != missing.rend(); ++wall) editor.remove(*wall);  // their indices are still true ones
+  for (auto wall = missing.rbegin(); wall != missing.rend(); ++wall)
+    editor.remove(*wall);  // their indices are still true ones
   return missing;
 }
 
@@ -270,7 +275,8 @@ Result<DistortedPlan> distort(const FloorPlan& building, const PlanDistortionPar
   const double cut = 2.5 * params.sigma_corner_m;
   for (Point2& p : result.drawn.corners) {
     p = result.warp(p);
-    for (int axis = 0; axis < 2; ++axis) p[axis] += params.scale * std::clamp(normal(random, params.sigma_corner_m), -cut, cut);
+    for (int axis = 0; axis < 2; ++axis)
+      p[axis] += params.scale * std::clamp(normal(random, params.sigma_corner_m), -cut, cut);
   }
   straighten(result.drawn, result.corner_world);
   for (PlanWall& wall : result.drawn.walls) wall.thickness_m *= params.scale;

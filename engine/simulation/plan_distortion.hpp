@@ -9,16 +9,17 @@
 
 namespace smokemap {
 
-/// How wrong a plan is. Defaults: knowledge of real evacuation plans (thesis, Paper V: local scale varies by about 10 %).
+/// How wrong a plan is. Defaults: knowledge of real evacuation plans (thesis, Paper V: local scale varies by about 10
+/// %).
 struct PlanDistortionParams {
-  double sigma_stretch = 0.10;       ///< of the local scale, per axis and per knot interval; 0.1 = ten percent
+  double sigma_stretch = 0.10;  ///< of the local scale, per axis and per knot interval; 0.1 = ten percent
   double stretch_cut_sigmas = 2.5;
   double knot_spacing_m = 4.0;
-  double sigma_corner_m = 0.03;      ///< every corner is off by this besides, per coordinate
-  int missing_walls = 0;             ///< inner walls that stand but are not drawn
-  int phantom_walls = 0;             ///< drawn, but not there (torn down)
-  double min_wall_m = 2.0;           ///< length of missing and phantom walls
-  double turn_rad = 0;               ///< of the whole drawing
+  double sigma_corner_m = 0.03;  ///< every corner is off by this besides, per coordinate
+  int missing_walls = 0;         ///< inner walls that stand but are not drawn
+  int phantom_walls = 0;         ///< drawn, but not there (torn down)
+  double min_wall_m = 2.0;       ///< length of missing and phantom walls
+  double turn_rad = 0;           ///< of the whole drawing
   double scale = 1;
   Result<Ok> validate() const;
 };
@@ -45,11 +46,11 @@ class PlanWarp {
 
 /// A wrong plan with the truth about it.
 struct DistortedPlan {
-  FloorPlan drawn;                    ///< frame: metres of the drawing
-  PlanWarp warp;                      ///< without the jitter of the corners
-  std::vector<Point2> corner_world;   ///< per drawn corner: its true place (of a phantom's end: where it would be)
-  std::vector<int> wall_source;       ///< per drawn wall: index of the true wall, -1 = phantom
-  std::vector<int> missing;           ///< true walls that are not drawn
+  FloorPlan drawn;                   ///< frame: metres of the drawing
+  PlanWarp warp;                     ///< without the jitter of the corners
+  std::vector<Point2> corner_world;  ///< per drawn corner: its true place (of a phantom's end: where it would be)
+  std::vector<int> wall_source;      ///< per drawn wall: index of the true wall, -1 = phantom
+  std::vector<int> missing;          ///< true walls that are not drawn
 };
 
 /// Draws the plan wrongly. Walls that go missing are inner walls between two rooms; phantoms divide a room in two.

@@ -17,7 +17,8 @@ class Light {
     spot_ = {uniform(random, 0.2, 0.8) * size.width, uniform(random, 0.2, 0.8) * size.height};
   }
   double gain(int x, int y) const {
-    const double along = std::cos(direction_) * (2.0 * x / size_.width - 1) + std::sin(direction_) * (2.0 * y / size_.height - 1);
+    const double along =
+        std::cos(direction_) * (2.0 * x / size_.width - 1) + std::sin(direction_) * (2.0 * y / size_.height - 1);
     return 1 - params_.shade * std::clamp(0.5 + along / 2.8, 0.0, 1.0);
   }
   double glare(int x, int y) const {
@@ -46,7 +47,8 @@ void photograph(const PlanPictureParams& params, std::mt19937_64& random, PlanPi
   const cv::Point2f photo[4] = {corner(0, 0, 1, 1), corner(w, 0, -1, 1), corner(w, h, -1, -1), corner(0, h, 1, -1)};
   const cv::Mat H_photo_sheet = cv::getPerspectiveTransform(sheet, photo);
   const cv::Mat H_sheet_photo = cv::getPerspectiveTransform(photo, sheet);
-  for (int i = 0; i < 9; ++i) picture.homography.H_layout_photo[static_cast<std::size_t>(i)] = H_sheet_photo.at<double>(i / 3, i % 3);
+  for (int i = 0; i < 9; ++i)
+    picture.homography.H_layout_photo[static_cast<std::size_t>(i)] = H_sheet_photo.at<double>(i / 3, i % 3);
 
   cv::Mat view(size, CV_8UC3, cv::Scalar(150, 160, 165));  // the wall behind
   cv::warpPerspective(picture.sheet, view, H_photo_sheet, size, cv::INTER_AREA, cv::BORDER_TRANSPARENT);

@@ -67,7 +67,8 @@ class PlanPainter {
     for (const PlanWindow& window : plan_.windows) {
       const Segment2 line = plan_.wall_line(window.wall);
       const WallSolid gap{{line.a + window.from * (line.b - line.a), line.a + window.to * (line.b - line.a)},
-                          thickness[static_cast<std::size_t>(window.wall)] / 2, window.wall};
+                          thickness[static_cast<std::size_t>(window.wall)] / 2,
+                          window.wall};
       canvas_.fill(px(gap.quad()), kWhite);
       const Point2 side = gap.half_thickness_m * gap.line.normal();
       for (const double at : {-0.9, 0.0, 0.9})
@@ -166,7 +167,8 @@ class PlanPainter {
       const bool on_right = right >= 0 && plan_.rooms[static_cast<std::size_t>(right)].corridor;
       if (on_left == on_right) continue;
       const Segment2 line = plan_.wall_line(wall);
-      const Point2 p = line.a + uniform(random, 0.1, 0.9) * (line.b - line.a) + (on_left ? 0.42 : -0.42) * line.normal();
+      const Point2 p =
+          line.a + uniform(random, 0.1, 0.9) * (line.b - line.a) + (on_left ? 0.42 : -0.42) * line.normal();
       bool crowded = false;
       for (const Point2& other : taken) crowded = crowded || (other - p).norm() < 2.5;
       for (std::size_t d = 0; d < plan_.doors.size(); ++d)
@@ -271,7 +273,8 @@ TrueLayout true_layout(const DistortedPlan& plan, const PlanPicture& picture) {
     std::vector<std::size_t> doors;
     for (std::size_t d = 0; d < drawn.doors.size(); ++d)
       if (drawn.doors[d].wall == static_cast<int>(i)) doors.push_back(d);
-    std::sort(doors.begin(), doors.end(), [&](std::size_t a, std::size_t b) { return drawn.doors[a].from < drawn.doors[b].from; });
+    std::sort(doors.begin(), doors.end(),
+              [&](std::size_t a, std::size_t b) { return drawn.doors[a].from < drawn.doors[b].from; });
     const auto add_piece = [&](int from, int to) {
       layout.walls.push_back({from, to, wall.thickness_m / picture.metres_per_pixel, 1.0, false});
       truth.wall_source.push_back(plan.wall_source[i]);
@@ -290,7 +293,8 @@ TrueLayout true_layout(const DistortedPlan& plan, const PlanPicture& picture) {
     const Segment2 line = drawn.wall_line(window.wall);
     layout.openings.push_back({{picture.to_pixels(line.a + window.from * (line.b - line.a)),
                                 picture.to_pixels(line.a + window.to * (line.b - line.a))},
-                               OpeningKind::kWindow, 1.0});
+                               OpeningKind::kWindow,
+                               1.0});
   }
   for (std::size_t i = 0; i < drawn.rooms.size(); ++i) {
     Polygon ring;

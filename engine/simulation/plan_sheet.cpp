@@ -26,10 +26,13 @@ void draw_note(PlanCanvas& canvas, const Note& note, double left, double top, do
 const char* colour_word(PlanSymbol symbol) {
   switch (symbol) {
     case PlanSymbol::kExit:
-    case PlanSymbol::kFirstAid: return "green";
+    case PlanSymbol::kFirstAid:
+      return "green";
     case PlanSymbol::kExtinguisher:
-    case PlanSymbol::kAlarm: return "red";
-    case PlanSymbol::kYouAreHere: return "blue";
+    case PlanSymbol::kAlarm:
+      return "red";
+    case PlanSymbol::kYouAreHere:
+      return "blue";
   }
   return "";
 }
@@ -73,18 +76,22 @@ void draw_sheet(PlanCanvas& canvas, const std::string& title, const std::string&
   canvas.box({24 * unit, 24 * unit}, {width - 24 * unit, 104 * unit}, kSafetyGreen);
   canvas.text(title, {52 * unit, 76 * unit}, 30 * unit, kPaper, PlanCanvas::Anchor::kLeft, true);
   canvas.text(subtitle, {width - 560 * unit, 73 * unit}, 16 * unit, kPaper);
-  const Polygon frame{{14 * unit, 14 * unit}, {width - 14 * unit, 14 * unit}, {width - 14 * unit, height - 14 * unit},
+  const Polygon frame{{14 * unit, 14 * unit},
+                      {width - 14 * unit, 14 * unit},
+                      {width - 14 * unit, height - 14 * unit},
                       {14 * unit, height - 14 * unit}};
   for (std::size_t i = 0; i < 4; ++i) canvas.line(frame[i], frame[(i + 1) % 4], 1.2 * unit, kHairline);
 
   const double left = width - 400 * unit, right = width - 40 * unit;
   draw_note(canvas,
-            {"In case of fire", kFireRed,
+            {"In case of fire",
+             kFireRed,
              {"Keep calm. Report the fire: call 112.", "Warn others, help those who need it.",
               "Follow the green signs. Do not use lifts.", "Go to the assembly point."}},
             left, 150 * unit, right, unit);
   draw_note(canvas,
-            {"In case of accident", kSafetyGreen,
+            {"In case of accident",
+             kSafetyGreen,
              {"Report: who, where, what happened,", "how many are hurt. Wait for questions.", "Give first aid.",
               "Guide the rescuers."}},
             left, 345 * unit, right, unit);

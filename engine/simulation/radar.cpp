@@ -22,10 +22,14 @@ struct Surface {
 Surface surface_of(Material material, double wall_transmission) {
   const double face = std::sqrt(wall_transmission);  // a wall has two
   switch (material) {
-    case Material::kBrick: return {0.3, 4, 0, true};
-    case Material::kWood: return {0.1, 4, face, false};
-    case Material::kGlass: return {0.1, 20, face, true};
-    case Material::kMetal: return {1.0, 20, 0, true};
+    case Material::kBrick:
+      return {0.3, 4, 0, true};
+    case Material::kWood:
+      return {0.1, 4, face, false};
+    case Material::kGlass:
+      return {0.1, 20, face, true};
+    case Material::kMetal:
+      return {1.0, 20, 0, true};
   }
   return {0.3, 4, 0, false};
 }
@@ -176,9 +180,9 @@ LaserScan strongest_returns(const RadarSweep& sweep, double floor_db) {
     const auto begin = sweep.power.begin() + static_cast<std::ptrdiff_t>(row * bins);
     const auto best = std::max_element(begin, begin + static_cast<std::ptrdiff_t>(bins));
     const bool found = bins > 0 && *best >= power_of(floor_db);
-    scan.ranges_m.push_back(found ? static_cast<float>(sweep.range_min_m +
-                                                       static_cast<double>(best - begin) * sweep.range_resolution_m)
-                                  : std::numeric_limits<float>::infinity());
+    scan.ranges_m.push_back(
+        found ? static_cast<float>(sweep.range_min_m + static_cast<double>(best - begin) * sweep.range_resolution_m)
+              : std::numeric_limits<float>::infinity());
     scan.intensities.push_back(found ? *best : 0.0F);
   }
   return scan;

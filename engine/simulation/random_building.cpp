@@ -17,7 +17,8 @@ std::vector<double> cuts(double low, double high, const RandomBuildingParams& pa
   const double length = high - low;
   const int fewest = std::max(1, static_cast<int>(std::ceil(length / params.max_room_m)));
   const int most = std::max(fewest, static_cast<int>(length / params.min_room_m));
-  const int count = std::clamp(static_cast<int>(std::lround(2 * length / (params.min_room_m + params.max_room_m))), fewest, most);
+  const int count =
+      std::clamp(static_cast<int>(std::lround(2 * length / (params.min_room_m + params.max_room_m))), fewest, most);
   for (int attempt = 0; attempt < 60; ++attempt) {
     std::vector<double> widths;
     double sum = 0;
@@ -47,7 +48,8 @@ struct Rooms {
 };
 
 /// A room of the building, perhaps divided into an outer part (towards the corridor) and an inner one.
-void add_room(Rooms& rooms, char wing, Point2 low, Point2 high, const RandomBuildingParams& params, std::mt19937_64& random) {
+void add_room(Rooms& rooms, char wing, Point2 low, Point2 high, const RandomBuildingParams& params,
+              std::mt19937_64& random) {
   const auto name = [&] { return wing + std::to_string(100 + rooms.outlines.size()); };
   const Point2 size = high - low;
   const int axis = size.x() > size.y() ? 0 : 1;
@@ -109,7 +111,8 @@ class DoorMaker {
     add_between(0, 1, 1.4);
     reached_[0] = reached_[1] = true;
     for (std::size_t room = 2; room < plan_.rooms.size(); ++room)
-      reached_[room] = add_between(static_cast<int>(room), 0, width()) || add_between(static_cast<int>(room), 1, width());
+      reached_[room] =
+          add_between(static_cast<int>(room), 0, width()) || add_between(static_cast<int>(room), 1, width());
     for (bool more = true; more;) {
       more = false;
       for (std::size_t room = 2; room < plan_.rooms.size(); ++room)

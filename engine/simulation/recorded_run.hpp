@@ -11,28 +11,29 @@
 namespace smokemap {
 
 struct RunParams {
-  double max_duration_s = 1200;      ///< the run ends here, or when the last place was visited
-  std::vector<Point2> waypoints;     ///< world; empty = a tour of all rooms
+  double max_duration_s = 1200;   ///< the run ends here, or when the last place was visited
+  std::vector<Point2> waypoints;  ///< world; empty = a tour of all rooms
   bool with_radar = true;
-  bool skew = true;                  ///< false: every scan is taken in one moment
+  bool skew = true;  ///< false: every scan is taken in one moment
   Result<Ok> validate() const;
 };
 
 /// What a robot sent during a whole run, in time order, with the truth beside it.
 struct RecordedRun {
   std::vector<std::variant<LaserScan, Odometry, RadarSweep>> items;
-  Trajectory truth;                  ///< map (origin: first pose); one entry a scan, at its stamp
-  std::vector<Pose2> T_odom_scan;    ///< wheel odometry at the same moments
-  std::vector<Segment2> unplanned;   ///< pieces of true walls that the plan lacks; world
-  WallWitness witness{{}};           ///< of the walls of the perfect reader's layout, then of `unplanned`
+  Trajectory truth;                 ///< map (origin: first pose); one entry a scan, at its stamp
+  std::vector<Pose2> T_odom_scan;   ///< wheel odometry at the same moments
+  std::vector<Segment2> unplanned;  ///< pieces of true walls that the plan lacks; world
+  WallWitness witness{{}};          ///< of the walls of the perfect reader's layout, then of `unplanned`
   int bumps = 0;
   double way_m = 0;
   double duration_s = 0;
-  std::size_t places = 0;            ///< that could be reached
-  std::vector<bool> visited;         ///< per room of the building: the robot's centre was in it
+  std::size_t places = 0;     ///< that could be reached
+  std::vector<bool> visited;  ///< per room of the building: the robot's centre was in it
 };
 
-/// Drives the demo's robot along a path only the simulator can know. kInvalidArgument, or kDegenerate if no place can be reached.
+/// Drives the demo's robot along a path only the simulator can know. kInvalidArgument, or kDegenerate if no place can
+/// be reached.
 Result<RecordedRun> record_run(const DemoScenario& demo, const RunParams& params = {});
 
 }  // namespace smokemap

@@ -90,8 +90,9 @@ void RobotDrive::measure(double way_m, double turn_rad) {
   };
   const double way_seen =
       scale_ * way_m + normal(random_, spread(params_.sigma_way_per_metre, way, params_.sigma_way_per_turn, turn));
-  const double turn_seen = turn_scale_ * turn_rad + bend_ * way_m +
-                           normal(random_, spread(params_.sigma_turn_per_turn, turn, params_.sigma_turn_per_metre, way));
+  const double turn_seen =
+      turn_scale_ * turn_rad + bend_ * way_m +
+      normal(random_, spread(params_.sigma_turn_per_turn, turn, params_.sigma_turn_per_metre, way));
   T_odom_robot_ = advanced(T_odom_robot_, way_seen, turn_seen);
 }
 

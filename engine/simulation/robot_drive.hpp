@@ -11,21 +11,21 @@
 namespace smokemap {
 
 struct DriveParams {
-  double radius_m = 0.25;             ///< the robot is a disc
+  double radius_m = 0.25;  ///< the robot is a disc
   double max_speed_mps = 0.7;
   double max_turn_rate_radps = 1.5;
   double acceleration_mps2 = 0.8;
   double turn_acceleration_radps2 = 4.0;
-  double dead_man_s = 0.5;            ///< brakes when no command came for so long
+  double dead_man_s = 0.5;  ///< brakes when no command came for so long
 
   // Odometry. Noise grows with the square root of the way, so that it does not depend on the step.
-  double sigma_turn_per_turn = 0.03;      ///< rad per sqrt(rad)   (alpha 1)
-  double sigma_turn_per_metre = 0.01;     ///< rad per sqrt(m)     (alpha 2)
-  double sigma_way_per_metre = 0.02;      ///< m per sqrt(m)       (alpha 3)
-  double sigma_way_per_turn = 0.005;      ///< m per sqrt(rad)     (alpha 4)
-  double sigma_scale = 0.02;              ///< systematic, drawn once a robot: wheel size
-  double sigma_turn_scale = 0.02;         ///< systematic: wheel distance
-  double sigma_bend_rad_per_m = 0.005;    ///< systematic: unequal wheels
+  double sigma_turn_per_turn = 0.03;    ///< rad per sqrt(rad)   (alpha 1)
+  double sigma_turn_per_metre = 0.01;   ///< rad per sqrt(m)     (alpha 2)
+  double sigma_way_per_metre = 0.02;    ///< m per sqrt(m)       (alpha 3)
+  double sigma_way_per_turn = 0.005;    ///< m per sqrt(rad)     (alpha 4)
+  double sigma_scale = 0.02;            ///< systematic, drawn once a robot: wheel size
+  double sigma_turn_scale = 0.02;       ///< systematic: wheel distance
+  double sigma_bend_rad_per_m = 0.005;  ///< systematic: unequal wheels
   Result<Ok> validate() const;
 };
 
@@ -46,8 +46,8 @@ class RobotDrive {
   const Pose2& odometry_pose() const { return T_odom_robot_; }
   double speed_mps() const { return speed_; }
   double turn_rate_radps() const { return turn_rate_; }
-  int bumps() const { return bumps_; }          ///< counted once per touch
-  bool braking() const { return braking_; }     ///< the dead-man timer ran out
+  int bumps() const { return bumps_; }       ///< counted once per touch
+  bool braking() const { return braking_; }  ///< the dead-man timer ran out
 
  private:
   void measure(double way_m, double turn_rad);

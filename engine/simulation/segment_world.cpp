@@ -92,8 +92,8 @@ void SegmentWorld::build() {
   for (std::size_t i = segments_.size(); i-- > 0;) count_or_place(static_cast<int>(i), true);
 }
 
-/// Counting sort in two passes: first the number of entries of every bucket, then (filling from each bucket's end, which
-/// turns the running totals into first entries) the entries themselves.
+/// Counting sort in two passes: first the number of entries of every bucket, then (filling from each bucket's end,
+/// which turns the running totals into first entries) the entries themselves.
 void SegmentWorld::count_or_place(int segment, bool place) {
   const Segment2& line = segments_[static_cast<std::size_t>(segment)].line;
   const Point2 a = line.a - origin_, b = line.b - origin_;
@@ -108,8 +108,8 @@ void SegmentWorld::count_or_place(int segment, bool place) {
     const double x0 = a.x() + from * (b.x() - a.x()), x1 = a.x() + to * (b.x() - a.x());
     const int column_end = bucket(std::max(x0, x1) + kTouch, width_);
     for (int column = bucket(std::min(x0, x1) - kTouch, width_); column <= column_end; ++column) {
-      const auto cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
-                        static_cast<std::size_t>(column);
+      const auto cell =
+          static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
       if (!place) {
         ++first_[cell];
         continue;
@@ -136,7 +136,8 @@ std::optional<RayHit> SegmentWorld::cast(const Point2& origin, const Point2& dir
   const auto bucket = [this](double v, int count) { return std::clamp(static_cast<int>(v / bucket_m_), 0, count - 1); };
   int column = bucket(ox + enter * dx - origin_.x(), width_), row = bucket(oy + enter * dy - origin_.y(), height_);
   const int step_x = dx > 0 ? 1 : -1, step_y = dy > 0 ? 1 : -1;
-  const double wide = dx == 0 ? kInfinite : bucket_m_ / std::abs(dx), high = dy == 0 ? kInfinite : bucket_m_ / std::abs(dy);
+  const double wide = dx == 0 ? kInfinite : bucket_m_ / std::abs(dx),
+               high = dy == 0 ? kInfinite : bucket_m_ / std::abs(dy);
   double next_x = dx == 0 ? kInfinite : (origin_.x() + (column + (dx > 0 ? 1 : 0)) * bucket_m_ - ox) / dx;
   double next_y = dy == 0 ? kInfinite : (origin_.y() + (row + (dy > 0 ? 1 : 0)) * bucket_m_ - oy) / dy;
 

@@ -33,8 +33,8 @@ struct RayHit {
 
 /// The true world as line segments in a bucket grid: exact, nothing precomputed over angles, doors can move.
 ///
-/// A ray that passes through a corner shared by two segments hits one of them: sides are decided by the sign of the same
-/// expression for both. Casting is const and free of allocation: any number of threads may cast at once.
+/// A ray that passes through a corner shared by two segments hits one of them: sides are decided by the sign of the
+/// same expression for both. Casting is const and free of allocation: any number of threads may cast at once.
 class SegmentWorld {
  public:
   SegmentWorld() = default;
@@ -71,11 +71,11 @@ class SegmentWorld {
   Point2 low_ = Point2::Zero(), high_ = Point2::Zero();
   Point2 origin_ = Point2::Zero();  ///< of bucket (0, 0)
   double bucket_m_ = 1;
-  int width_ = 0, height_ = 0;       ///< buckets
-  std::vector<int> first_;           ///< bucket -> first entry; one more than buckets
-  std::vector<Ends> ends_;           ///< the segments of a bucket side by side
-  std::vector<int> owner_;           ///< entry -> segment
-  std::vector<Point2> normals_;      ///< per segment
+  int width_ = 0, height_ = 0;   ///< buckets
+  std::vector<int> first_;       ///< bucket -> first entry; one more than buckets
+  std::vector<Ends> ends_;       ///< the segments of a bucket side by side
+  std::vector<int> owner_;       ///< entry -> segment
+  std::vector<Point2> normals_;  ///< per segment
 };
 
 /// The oracle: tries every segment. For tests and for worlds of a few segments.

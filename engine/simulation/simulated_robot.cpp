@@ -54,8 +54,8 @@ RobotOutput SimulatedRobot::step(const SimulatedWorld& world) {
       scan_start_ = now_;
       T_world_scan_start_ = true_pose();
     }
-    SimulatedScan turn = simulate_scan(world.walls, world.smoke, T_world_scan_start_, true_pose(), scan_start_,
-                                       params_.lidar, random);
+    SimulatedScan turn =
+        simulate_scan(world.walls, world.smoke, T_world_scan_start_, true_pose(), scan_start_, params_.lidar, random);
     turn.scan.robot = params_.name;
     out.scans.push_back(std::move(turn.scan));
     scan_start_ = now_;

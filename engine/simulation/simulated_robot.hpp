@@ -23,7 +23,7 @@ struct SimulatedWorld {
 
 struct SimulatedRobotParams {
   std::string name = "robot1";
-  std::uint64_t index = 1;          ///< its noise streams: adding a robot does not change another's noise
+  std::uint64_t index = 1;  ///< its noise streams: adding a robot does not change another's noise
   std::uint64_t seed = 1;
   LidarParams lidar;
   RadarSimParams radar;
@@ -31,7 +31,7 @@ struct SimulatedRobotParams {
   bool with_lidar = true;
   bool with_radar = true;
   double odometry_hz = 20;
-  Stamp start = 0;                  ///< of the robot's clock
+  Stamp start = 0;  ///< of the robot's clock
   Result<Ok> validate() const;
 };
 
@@ -43,7 +43,8 @@ struct RobotOutput {
 };
 
 /// A robot on an integer clock of 10 ms steps. Same seed, index and commands at the same steps: the same bytes.
-/// A scan is delivered when its turn ends, stamped with its first beam (without skew: taken and stamped there). Truth is separate: nothing of it is in the output.
+/// A scan is delivered when its turn ends, stamped with its first beam (without skew: taken and stamped there). Truth
+/// is separate: nothing of it is in the output.
 class SimulatedRobot {
  public:
   static constexpr Stamp kStep = 10'000'000;

@@ -40,7 +40,8 @@ void SmokeField::read_walls(const SegmentWorld& world) {
 
 void SmokeField::advance(double seconds) {
   if (empty() || seconds <= 0) return;
-  const double stable = params_.diffusion_m2ps > 0 ? 0.2 * params_.cell_m * params_.cell_m / params_.diffusion_m2ps : seconds;
+  const double stable =
+      params_.diffusion_m2ps > 0 ? 0.2 * params_.cell_m * params_.cell_m / params_.diffusion_m2ps : seconds;
   const int steps = std::max(1, static_cast<int>(std::ceil(seconds / std::min(stable, 1.0))));
   for (int i = 0; i < steps; ++i) {
     add_sources(seconds / steps);

@@ -31,8 +31,8 @@ struct SmokePiece {
   double extinction_per_m = 0;
 };
 
-/// Extinction (1/m) on a coarse grid. Smoke spreads by diffusion between cells with a free way between their centres: walls
-/// and shut doors hold it back. Deterministic; explicit steps, subdivided to stay stable.
+/// Extinction (1/m) on a coarse grid. Smoke spreads by diffusion between cells with a free way between their centres:
+/// walls and shut doors hold it back. Deterministic; explicit steps, subdivided to stay stable.
 class SmokeField {
  public:
   SmokeField() = default;  ///< clear air everywhere
@@ -44,7 +44,8 @@ class SmokeField {
 
   double extinction_at(const Point2& p) const;  ///< 0 outside
   void set_extinction(const Point2& p, double per_m);
-  /// Integral of extinction along the ray; transmission one way is exp(-optical_depth) (Beer-Lambert). Exact for the grid.
+  /// Integral of extinction along the ray; transmission one way is exp(-optical_depth) (Beer-Lambert). Exact for the
+  /// grid.
   double optical_depth(const Point2& origin, const Point2& direction, double range_m) const;
   /// The ray cut at cell borders, near to far; pieces in clear air are left out.
   void trace(const Point2& origin, const Point2& direction, double range_m, std::vector<SmokePiece>& pieces) const;

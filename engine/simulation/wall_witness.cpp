@@ -60,7 +60,9 @@ double WallWitness::share(const std::vector<int>& counts, int least) {
   return static_cast<double>(enough) / static_cast<double>(counts.size());
 }
 
-double WallWitness::seen(int wall, int least) const { return share(walls_[static_cast<std::size_t>(wall)].echoes, least); }
+double WallWitness::seen(int wall, int least) const {
+  return share(walls_[static_cast<std::size_t>(wall)].echoes, least);
+}
 double WallWitness::crossed(int wall, int least) const {
   return share(walls_[static_cast<std::size_t>(wall)].crossings, least);
 }
@@ -68,7 +70,8 @@ double WallWitness::crossed(int wall, int least) const {
 std::vector<Segment2> WallWitness::seen_parts(int wall, int least) const {
   const Tally& tally = walls_[static_cast<std::size_t>(wall)];
   const auto at = [&](std::size_t piece) -> Point2 {
-    return tally.line.a + static_cast<double>(piece) / static_cast<double>(tally.echoes.size()) * (tally.line.b - tally.line.a);
+    return tally.line.a +
+           static_cast<double>(piece) / static_cast<double>(tally.echoes.size()) * (tally.line.b - tally.line.a);
   };
   std::vector<Segment2> parts;
   bool before = false;

@@ -7,8 +7,9 @@
 
 namespace smokemap {
 
-/// Counts, from outside, what a robot could know about walls: which parts of them its lidar's echoes fell on, and which parts
-/// its beams went through. For judging an answer: a wall that was never looked at cannot be called right or wrong.
+/// Counts, from outside, what a robot could know about walls: which parts of them its lidar's echoes fell on, and which
+/// parts its beams went through. For judging an answer: a wall that was never looked at cannot be called right or
+/// wrong.
 class WallWitness {
  public:
   /// @param walls  centre lines, world
@@ -17,7 +18,8 @@ class WallWitness {
   /// The robot moved from T_world_start to T_world_end during the scan (the same pose twice for a scan without skew).
   void add(const LaserScan& scan, const Pose2& T_world_start, const Pose2& T_world_end);
 
-  /// Share of the wall's length with at least `least` echoes within 0.25 m of its centre line, counted in pieces of 0.15 m.
+  /// Share of the wall's length with at least `least` echoes within 0.25 m of its centre line, counted in pieces of
+  /// 0.15 m.
   double seen(int wall, int least) const;
   /// The stretches of the wall that `seen` counts.
   std::vector<Segment2> seen_parts(int wall, int least) const;

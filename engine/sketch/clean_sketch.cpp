@@ -1,6 +1,6 @@
-// Idea: people lift the pen too early, overshoot, and leave doors open. Every loose end of a wall stroke looks for what it was
-// meant to meet. What is near is joined; what is a little further is an opening: it stays open, but counts as shut while the
-// outside is flooded, so that a room with a door is still a room.
+// Idea: people lift the pen too early, overshoot, and leave doors open. Every loose end of a wall stroke looks for what
+// it was meant to meet. What is near is joined; what is a little further is an opening: it stays open, but counts as
+// shut while the outside is flooded, so that a room with a door is still a room.
 #include "sketch/clean_sketch.hpp"
 
 #include <algorithm>
@@ -11,7 +11,9 @@
 namespace smokemap {
 namespace {
 
-cv::Point pixel(const Point2& p) { return {static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))}; }
+cv::Point pixel(const Point2& p) {
+  return {static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))};
+}
 
 void draw_line(cv::Mat& mask, const Segment2& s, int width, int value) {
   cv::line(mask, pixel(s.a), pixel(s.b), cv::Scalar(value), width);
@@ -23,8 +25,9 @@ std::vector<const Stroke*> strokes_of(const SketchMap& sketch, StrokeKind kind) 
   for (const auto& s : sketch.strokes)
     if (s.kind == kind && !s.points_px.empty()) strokes.push_back(&s);
   const auto before = [](const Stroke* one, const Stroke* two) {
-    return std::lexicographical_compare(one->points_px.begin(), one->points_px.end(), two->points_px.begin(), two->points_px.end(),
-                                        [](const Point2& a, const Point2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
+    return std::lexicographical_compare(
+        one->points_px.begin(), one->points_px.end(), two->points_px.begin(), two->points_px.end(),
+        [](const Point2& a, const Point2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
   };
   std::stable_sort(strokes.begin(), strokes.end(), before);
   return strokes;
@@ -147,7 +150,8 @@ SketchGap open_door(cv::Mat& walls, const Stroke& door, const std::vector<const 
       const Point2 half = 0.5 * std::max(drawn.length(), 3.0 * pen_px) * piece.direction();
       gap.gap_px = {*crossing - half, *crossing + half};
     }
-  for (std::size_t i = 0; i + 1 < door.points_px.size(); ++i) draw_line(walls, {door.points_px[i], door.points_px[i + 1]}, 2 * pen_px + 1, 0);
+  for (std::size_t i = 0; i + 1 < door.points_px.size(); ++i)
+    draw_line(walls, {door.points_px[i], door.points_px[i + 1]}, 2 * pen_px + 1, 0);
   draw_line(walls, gap.gap_px, 2 * pen_px + 1, 0);
   return gap;
 }
@@ -172,16 +176,20 @@ void fill_slivers(cv::Mat& free, double least_area) {
   const int count = cv::connectedComponentsWithStats(free, labels, stats, centroids, 4);
   for (int y = 0; y < free.rows; ++y)
     for (int x = 0; x < free.cols; ++x)
-      if (const int label = labels.at<int>(y, x); label > 0 && label < count && stats.at<int>(label, cv::CC_STAT_AREA) < least_area) free.at<uchar>(y, x) = 0;
+      if (const int label = labels.at<int>(y, x);
+          label > 0 && label < count && stats.at<int>(label, cv::CC_STAT_AREA) < least_area)
+        free.at<uchar>(y, x) = 0;
 }
 
 Result<Ok> check_sheet(const SketchMap& sketch, const SketchParams& params) {
-  if (sketch.width_px < 1 || sketch.height_px < 1) return fail(Errc::kInvalidArgument, "the sheet of the sketch has no size");
+  if (sketch.width_px < 1 || sketch.height_px < 1)
+    return fail(Errc::kInvalidArgument, "the sheet of the sketch has no size");
   if (1e-6 * sketch.width_px * static_cast<double>(sketch.height_px) > params.max_sheet_megapixels)
     return fail(Errc::kTooLarge, "the sheet of the sketch is too large");
   for (const auto& s : sketch.strokes)
     for (const auto& p : s.points_px)
-      if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e6) return fail(Errc::kInvalidArgument, "a point of a stroke is not a number");
+      if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e6)
+        return fail(Errc::kInvalidArgument, "a point of a stroke is not a number");
   return Ok{};
 }
 
@@ -199,7 +207,8 @@ Result<CleanSketch> clean_sketch(const SketchMap& sketch, const SketchParams& pa
   for (const auto* s : walls) {
     const int width = std::clamp(static_cast<int>(std::lround(s->width_px)), params.min_wall_px, 60);
     pen_px = std::max(pen_px, width);
-    for (std::size_t i = 0; i + 1 < s->points_px.size(); ++i) draw_line(drawn, {s->points_px[i], s->points_px[i + 1]}, width, 255);
+    for (std::size_t i = 0; i + 1 < s->points_px.size(); ++i)
+      draw_line(drawn, {s->points_px[i], s->points_px[i + 1]}, width, 255);
   }
   CleanSketch clean;
   clean.gaps = finder.find();
@@ -208,7 +217,9 @@ Result<CleanSketch> clean_sketch(const SketchMap& sketch, const SketchParams& pa
   cv::Mat shut = drawn.clone();  // before doors are opened
   for (const auto* door : strokes_of(sketch, StrokeKind::kDoor)) {
     const SketchGap opened = open_door(drawn, *door, walls, pen_px);
-    std::erase_if(clean.gaps, [&](const SketchGap& g) { return (g.gap_px.midpoint() - opened.gap_px.midpoint()).norm() < 0.5 * opened.gap_px.length() + pen_px; });
+    std::erase_if(clean.gaps, [&](const SketchGap& g) {
+      return (g.gap_px.midpoint() - opened.gap_px.midpoint()).norm() < 0.5 * opened.gap_px.length() + pen_px;
+    });
     clean.gaps.push_back(opened);
   }
   for (const auto& g : clean.gaps) draw_line(shut, g.gap_px, params.min_wall_px, 255);
@@ -218,16 +229,21 @@ Result<CleanSketch> clean_sketch(const SketchMap& sketch, const SketchParams& pa
   const cv::Mat inside = (shut == 0) & (outside_of(shut, radius) == 0);
   const double wide = 0.5 * params.report_gap_share * finder.extent();
   const cv::Mat inside_wide = (shut == 0) & (outside_of(shut, wide) == 0);
-  if (cv::countNonZero(inside_wide) < least) return fail(Errc::kDegenerate, "no closed room: walls do not meet anywhere");
-  if (cv::countNonZero(inside_wide) > 1.5 * cv::countNonZero(inside)) {  // most of the building would run out through one gap
+  if (cv::countNonZero(inside_wide) < least)
+    return fail(Errc::kDegenerate, "no closed room: walls do not meet anywhere");
+  if (cv::countNonZero(inside_wide) >
+      1.5 * cv::countNonZero(inside)) {  // most of the building would run out through one gap
     radius = wide;
     clean.warnings.push_back("The outline has wide gaps; where it ends is a guess.");
   }
   // Openings are free on the inside, and where they lie between two rooms.
   clean.free_space = (drawn == 0) & (outside_of(shut, radius) == 0);
   fill_slivers(clean.free_space, 0.5 * least);
-  const auto open = std::count_if(clean.gaps.begin(), clean.gaps.end(), [](const SketchGap& g) { return !g.closed_by_us; });
-  if (open > 0) clean.warnings.push_back(std::to_string(open) + (open == 1 ? " gap is left open: a door, or close it." : " gaps are left open: doors, or close them."));
+  const auto open =
+      std::count_if(clean.gaps.begin(), clean.gaps.end(), [](const SketchGap& g) { return !g.closed_by_us; });
+  if (open > 0)
+    clean.warnings.push_back(std::to_string(open) + (open == 1 ? " gap is left open: a door, or close it."
+                                                               : " gaps are left open: doors, or close them."));
   return clean;
 }
 

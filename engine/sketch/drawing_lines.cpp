@@ -70,7 +70,8 @@ int erase_ruled_lines(cv::Mat& mask, const cv::Mat& strength, double turn_deg) {
     if (r.share < 0.55) continue;
     const bool known = std::any_of(rulings.begin(), rulings.end(), [&](const Ruling& o) {
       const Segment2 line{o.p, o.p + o.u};
-      return std::abs(signed_line_distance(line, a)) < 0.006 * side && std::abs(signed_line_distance(line, b)) < 0.006 * side;
+      return std::abs(signed_line_distance(line, a)) < 0.006 * side &&
+             std::abs(signed_line_distance(line, b)) < 0.006 * side;
     });
     if (!known) rulings.push_back(r);
   }
@@ -79,7 +80,8 @@ int erase_ruled_lines(cv::Mat& mask, const cv::Mat& strength, double turn_deg) {
   for (const auto& lead : rulings) {
     std::vector<Ruling> family;
     for (const auto& r : rulings)
-      if (line_angle_between(std::atan2(lead.u.y(), lead.u.x()), std::atan2(r.u.y(), r.u.x())) < radians(2 * turn_deg)) family.push_back(r);
+      if (line_angle_between(std::atan2(lead.u.y(), lead.u.x()), std::atan2(r.u.y(), r.u.x())) < radians(2 * turn_deg))
+        family.push_back(r);
     if (family.size() > best.size()) best = family;
   }
   if (best.size() < 3) return 0;
@@ -94,7 +96,8 @@ int erase_ruled_lines(cv::Mat& mask, const cv::Mat& strength, double turn_deg) {
       for (double o = -3; o <= 3; o += 0.5) {
         const Point2 q = r.p + s * r.u + o * n;
         const int x = static_cast<int>(std::lround(q.x())), y = static_cast<int>(std::lround(q.y()));
-        if (x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && strength.at<uchar>(y, x) < pen) mask.at<uchar>(y, x) = 0;
+        if (x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && strength.at<uchar>(y, x) < pen)
+          mask.at<uchar>(y, x) = 0;
       }
   }
   return static_cast<int>(best.size());
@@ -120,7 +123,9 @@ std::vector<Polyline> without_hatching(std::vector<Polyline> lines, double spaci
     return i;
   };
   const auto chord = [&](std::size_t i) { return Segment2{lines[i].front(), lines[i].back()}; };
-  const auto straight = [&](std::size_t i) { return chord(i).length() > 0.93 * polyline_length(lines[i]) && chord(i).length() > 0; };
+  const auto straight = [&](std::size_t i) {
+    return chord(i).length() > 0.93 * polyline_length(lines[i]) && chord(i).length() > 0;
+  };
   for (std::size_t i = 0; i < lines.size(); ++i)
     for (std::size_t j = i + 1; j < lines.size(); ++j) {
       if (!straight(i) || !straight(j)) continue;
@@ -129,7 +134,9 @@ std::vector<Polyline> without_hatching(std::vector<Polyline> lines, double spaci
       if (ratio < 0.4 || ratio > 2.5 || line_angle_between(one.heading(), two.heading()) > radians(10)) continue;
       const double apart = std::abs(signed_line_distance(one, two.midpoint()));
       const double shift = std::abs(along(one, two.midpoint()) - 0.5) * one.length();
-      if (apart < 2 || apart > spacing_px || apart > 0.8 * std::max(one.length(), two.length()) || shift > 0.6 * (one.length() + two.length())) continue;
+      if (apart < 2 || apart > spacing_px || apart > 0.8 * std::max(one.length(), two.length()) ||
+          shift > 0.6 * (one.length() + two.length()))
+        continue;
       const std::size_t low = std::min(root(i), root(j)), high = std::max(root(i), root(j));
       family[high] = low;
     }

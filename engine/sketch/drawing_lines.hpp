@@ -12,8 +12,8 @@ using Polyline = std::vector<Point2>;
 
 double polyline_length(const Polyline& line);
 
-/// Takes printed rulings out of the mask: lines that cross most of the picture, nearly parallel, fainter than the pen. Where
-/// the pen runs over a ruling its ink stays. Returns how many rulings there were.
+/// Takes printed rulings out of the mask: lines that cross most of the picture, nearly parallel, fainter than the pen.
+/// Where the pen runs over a ruling its ink stays. Returns how many rulings there were.
 /// @param mask      CV_8UC1, 255 = ink; changed
 /// @param strength  CV_8UC1, how much pen
 int erase_ruled_lines(cv::Mat& mask, const cv::Mat& strength, double turn_deg);
@@ -21,7 +21,8 @@ int erase_ruled_lines(cv::Mat& mask, const cv::Mat& strength, double turn_deg);
 /// Branches as polylines that stay within `tolerance_px` of what was drawn.
 std::vector<Polyline> straightened(const std::vector<SkeletonBranch>& branches, double tolerance_px);
 
-/// Drops families of four or more straight, parallel lines with at most `spacing_px` between neighbours: hatching, steps.
+/// Drops families of four or more straight, parallel lines with at most `spacing_px` between neighbours: hatching,
+/// steps.
 std::vector<Polyline> without_hatching(std::vector<Polyline> lines, double spacing_px);
 
 }  // namespace smokemap

@@ -20,7 +20,8 @@ cv::Mat thin_part(const cv::Mat& strength, int width_px) {
 /// Colour without its gray: how a pixel differs from paper in hue alone.
 cv::Vec3f tint(const cv::Vec3b& paper) {
   const float mean = (static_cast<float>(paper[0]) + static_cast<float>(paper[1]) + static_cast<float>(paper[2])) / 3;
-  return {static_cast<float>(paper[0]) - mean, static_cast<float>(paper[1]) - mean, static_cast<float>(paper[2]) - mean};
+  return {static_cast<float>(paper[0]) - mean, static_cast<float>(paper[1]) - mean,
+          static_cast<float>(paper[2]) - mean};
 }
 
 /// The direction of colour that the ink shares; nothing if most of it is gray or each its own.
@@ -40,7 +41,8 @@ std::optional<cv::Vec3f> pen_colour(const PaperView& view, const cv::Mat& thin_d
     }
   const double length = cv::norm(sum);
   if (tinted < 0.15 * ink || tinted < 50 || length < 0.5 * power) return std::nullopt;
-  return cv::Vec3f(static_cast<float>(sum[0] / length), static_cast<float>(sum[1] / length), static_cast<float>(sum[2] / length));
+  return cv::Vec3f(static_cast<float>(sum[0] / length), static_cast<float>(sum[1] / length),
+                   static_cast<float>(sum[2] / length));
 }
 
 cv::Mat along_colour(const PaperView& view, const cv::Vec3f& colour) {

@@ -19,7 +19,8 @@ void drop_small_figures(cv::Mat& mask, double dot_px, double text_px) {
   const int count = cv::connectedComponentsWithStats(mask, labels, stats, centroids, 8);
   if (count < 2) return;
   const auto box = [&](int label) {
-    return cv::Rect(stats.at<int>(label, cv::CC_STAT_LEFT), stats.at<int>(label, cv::CC_STAT_TOP), stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT));
+    return cv::Rect(stats.at<int>(label, cv::CC_STAT_LEFT), stats.at<int>(label, cv::CC_STAT_TOP),
+                    stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT));
   };
   int largest = 1;
   for (int label = 2; label < count; ++label)
@@ -36,7 +37,8 @@ void drop_small_figures(cv::Mat& mask, double dot_px, double text_px) {
   }
   for (int y = 0; y < mask.rows; ++y)
     for (int x = 0; x < mask.cols; ++x)
-      if (const int label = labels.at<int>(y, x); label > 0 && !keep[static_cast<std::size_t>(label)]) mask.at<uchar>(y, x) = 0;
+      if (const int label = labels.at<int>(y, x); label > 0 && !keep[static_cast<std::size_t>(label)])
+        mask.at<uchar>(y, x) = 0;
 }
 
 /// Twice the median distance from the middle of a line to its edge.
@@ -54,7 +56,8 @@ double pen_width(const cv::Mat& mask, const std::vector<SkeletonBranch>& branche
 
 Result<SketchPhoto> read_drawing(const cv::Mat& picture, const SketchPhotoParams& params, const Progress& progress) {
   if (const auto valid = params.validate(); !valid) return valid.error();
-  if (1e-6 * picture.rows * static_cast<double>(picture.cols) > params.max_megapixels) return fail(Errc::kTooLarge, "the photograph is too large");
+  if (1e-6 * picture.rows * static_cast<double>(picture.cols) > params.max_megapixels)
+    return fail(Errc::kTooLarge, "the photograph is too large");
   const auto bgr = as_bgr(picture);
   if (!bgr) return bgr.error();
   const WorkPicture work = at_work_size(*bgr, 1, params.work_long_side_px);
@@ -65,19 +68,24 @@ Result<SketchPhoto> read_drawing(const cv::Mat& picture, const SketchPhotoParams
   cv::Mat& mask = pen_ink.mask;
   SketchPhoto photo;
   const int ruled = pen_ink.coloured ? 0 : erase_ruled_lines(mask, pen_ink.strength, params.ruled_turn_deg);
-  if (ruled > 0) photo.warnings.push_back("The paper is ruled: " + std::to_string(ruled) + " printed lines were left out.");
+  if (ruled > 0)
+    photo.warnings.push_back("The paper is ruled: " + std::to_string(ruled) + " printed lines were left out.");
   drop_small_figures(mask, params.min_stroke_share * side, params.text_share * side);
   if (progress.cancelled()) return fail(Errc::kCancelled, "reading the drawing was cancelled");
   progress.tell(0.5, "lines");
   if (cv::countNonZero(mask) == 0) return fail(Errc::kDegenerate, "nothing drawn was found in the photograph");
-  if (cv::countNonZero(mask) > 0.3 * static_cast<double>(mask.total())) return fail(Errc::kDegenerate, "the photograph shows no line drawing");
+  if (cv::countNonZero(mask) > 0.3 * static_cast<double>(mask.total()))
+    return fail(Errc::kDegenerate, "the photograph shows no line drawing");
   const auto branches = trace_skeleton(mask, 0.4 * params.min_stroke_share * side);
   const double pen = pen_width(mask, branches);
   auto lines = straightened(branches, params.simplify_pens * pen);
   const std::size_t before = lines.size();
   lines = without_hatching(std::move(lines), 0.05 * side);
-  if (lines.size() < before) photo.warnings.push_back("Hatching and steps were left out: " + std::to_string(before - lines.size()) + " lines.");
-  std::erase_if(lines, [&](const std::vector<Point2>& line) { return polyline_length(line) < 0.5 * params.min_stroke_share * side; });
+  if (lines.size() < before)
+    photo.warnings.push_back("Hatching and steps were left out: " + std::to_string(before - lines.size()) + " lines.");
+  std::erase_if(lines, [&](const std::vector<Point2>& line) {
+    return polyline_length(line) < 0.5 * params.min_stroke_share * side;
+  });
   if (lines.empty()) return fail(Errc::kDegenerate, "nothing drawn was found in the photograph");
   photo.width_px = bgr->cols;
   photo.height_px = bgr->rows;
@@ -94,7 +102,8 @@ Result<SketchPhoto> read_drawing(const cv::Mat& picture, const SketchPhotoParams
 
 }  // namespace
 
-Result<SketchPhoto> read_sketch_photo(const cv::Mat& picture_bgr, const SketchPhotoParams& params, const Progress& progress) {
+Result<SketchPhoto> read_sketch_photo(const cv::Mat& picture_bgr, const SketchPhotoParams& params,
+                                      const Progress& progress) {
   try {
     return read_drawing(picture_bgr, params, progress);
   } catch (const cv::Exception& e) {

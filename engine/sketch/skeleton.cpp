@@ -7,11 +7,15 @@
 namespace smokemap {
 namespace {
 
-constexpr std::array<std::array<int, 2>, 8> kAround{{{0, -1}, {1, 0}, {0, 1}, {-1, 0}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}}};
+constexpr std::array<std::array<int, 2>, 8> kAround{
+    {{0, -1}, {1, 0}, {0, 1}, {-1, 0}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}}};
 
 class SkeletonWalker {
  public:
-  explicit SkeletonWalker(cv::Mat thin) : thin_(std::move(thin)), node_(cv::Mat::zeros(thin_.size(), CV_8UC1)), done_(cv::Mat::zeros(thin_.size(), CV_8UC1)) {
+  explicit SkeletonWalker(cv::Mat thin)
+      : thin_(std::move(thin)),
+        node_(cv::Mat::zeros(thin_.size(), CV_8UC1)),
+        done_(cv::Mat::zeros(thin_.size(), CV_8UC1)) {
     for (int y = 0; y < thin_.rows; ++y)
       for (int x = 0; x < thin_.cols; ++x)
         if (on({x, y}) && degree({x, y}) != 2) node_.at<uchar>(y, x) = 1;
@@ -28,7 +32,9 @@ class SkeletonWalker {
   }
 
  private:
-  bool on(cv::Point p) const { return p.x >= 0 && p.y >= 0 && p.x < thin_.cols && p.y < thin_.rows && thin_.at<uchar>(p); }
+  bool on(cv::Point p) const {
+    return p.x >= 0 && p.y >= 0 && p.x < thin_.cols && p.y < thin_.rows && thin_.at<uchar>(p);
+  }
   /// Neighbours, diagonal ones only where no straight neighbour joins them already.
   std::vector<cv::Point> neighbours(cv::Point p) const {
     std::vector<cv::Point> out;

@@ -12,8 +12,9 @@ struct SkeletonBranch {
   bool free_b = false;
 };
 
-/// Thins the mask (255 = ink) to one pixel and walks it from junction to junction; closed loops come as one branch whose ends meet.
-/// Branches shorter than `min_branch_px` that end in nothing are hairs of the thinning and left out. Reading order.
+/// Thins the mask (255 = ink) to one pixel and walks it from junction to junction; closed loops come as one branch
+/// whose ends meet. Branches shorter than `min_branch_px` that end in nothing are hairs of the thinning and left out.
+/// Reading order.
 std::vector<SkeletonBranch> trace_skeleton(const cv::Mat& mask, double min_branch_px);
 
 }  // namespace smokemap

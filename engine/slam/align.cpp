@@ -50,7 +50,7 @@ PointToLine point_to_line(const Point2& p_robot, const Point2& q, const Point2& 
 }
 
 ScanAlignment align(const std::vector<SurfacePoint>& points_robot, const SurfaceMap& map, const Pose2& T_map_robot,
-                const AlignParams& params, const std::optional<PosePrior>& prior) {
+                    const AlignParams& params, const std::optional<PosePrior>& prior) {
   ScanAlignment found;
   found.T_map_robot = T_map_robot;
   NormalEquations sum;

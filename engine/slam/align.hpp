@@ -16,9 +16,9 @@ struct PosePrior {
 struct ScanAlignment {
   Pose2 T_map_robot;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the points alone: x, y (map frame), heading
-  double score = 0;     ///< share of the points that lie on a surface of the map, weighted 0 .. 1 by their distance
-  double rms_m = 0;     ///< of points on surfaces
-  int matched = 0;      ///< points with a surface within the last gate
+  double score = 0;  ///< share of the points that lie on a surface of the map, weighted 0 .. 1 by their distance
+  double rms_m = 0;  ///< of points on surfaces
+  int matched = 0;   ///< points with a surface within the last gate
   bool converged = false;
 };
 
@@ -26,7 +26,7 @@ struct ScanAlignment {
 /// iteration, within a gate that closes. r_i = n_i . (R p_i + t - q_i), Geman-McClure kernel.
 /// Never fails: no surface found gives a score of 0.
 ScanAlignment align(const std::vector<SurfacePoint>& points_robot, const SurfaceMap& map, const Pose2& T_map_robot,
-                const AlignParams& params, const std::optional<PosePrior>& prior = {});
+                    const AlignParams& params, const std::optional<PosePrior>& prior = {});
 
 /// One row of the problem, for the solver and for the test of its derivative.
 struct PointToLine {

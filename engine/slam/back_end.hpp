@@ -6,8 +6,8 @@
 
 namespace smokemap {
 
-/// The slow half: owns the graph, closes loops, solves, polishes. Edges of the graph are, in this order, the front end's
-/// (one a node), loops, matched pairs.
+/// The slow half: owns the graph, closes loops, solves, polishes. Edges of the graph are, in this order, the front
+/// end's (one a node), loops, matched pairs.
 class BackEnd {
  public:
   explicit BackEnd(const SlamParams& params);

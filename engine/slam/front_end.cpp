@@ -16,7 +16,8 @@ constexpr double kScoreMemory = 0.1;  ///< share of the newest score in the usua
 constexpr double kUsualShare = 0.6;
 
 Eigen::Matrix3d spread(const PredictedStep& step) {
-  return Eigen::Vector3d(step.sigma_m * step.sigma_m, step.sigma_m * step.sigma_m, step.sigma_rad * step.sigma_rad).asDiagonal();
+  return Eigen::Vector3d(step.sigma_m * step.sigma_m, step.sigma_m * step.sigma_m, step.sigma_rad * step.sigma_rad)
+      .asDiagonal();
 }
 
 }  // namespace
@@ -58,7 +59,8 @@ bool FrontEnd::believable(const ScanAlignment& found, const Pose2& predicted, co
 }
 
 /// The prediction stands. Odometry carries nodes over a while of this; after that the old map is given up.
-FrontEnd::Tracked FrontEnd::go_on_blindly(const ScanPoints& points, const Pose2& predicted, const PredictedStep& step, double score) {
+FrontEnd::Tracked FrontEnd::go_on_blindly(const ScanPoints& points, const Pose2& predicted, const PredictedStep& step,
+                                          double score) {
   T_track_robot_ = predicted;
   if (++poor_in_a_row_ >= params_.front_end.lost_after_scans) return begin_piece(points, ScanFate::kNewPiece);
   Tracked tracked = answer(ScanFate::kPoorMatch, score);
@@ -70,7 +72,8 @@ FrontEnd::Tracked FrontEnd::go_on_blindly(const ScanPoints& points, const Pose2&
   return tracked;
 }
 
-ScanAlignment FrontEnd::match(const std::vector<SurfacePoint>& surface, const Pose2& predicted, const PredictedStep& step) {
+ScanAlignment FrontEnd::match(const std::vector<SurfacePoint>& surface, const Pose2& predicted,
+                              const PredictedStep& step) {
   PosePrior prior{predicted, Eigen::Matrix3d::Zero()};
   prior.information.diagonal() << 1 / (step.sigma_m * step.sigma_m), 1 / (step.sigma_m * step.sigma_m),
       1 / (step.sigma_rad * step.sigma_rad);
@@ -85,8 +88,8 @@ bool FrontEnd::search_needed(const PredictedStep& step, double score) const {
 }
 
 /// Looks for a better start than the prediction, refines from there, and keeps the better of both.
-ScanAlignment FrontEnd::search(const std::vector<SurfacePoint>& surface, const PosePrior& prior, const PredictedStep& step,
-                           const ScanAlignment& so_far) {
+ScanAlignment FrontEnd::search(const std::vector<SurfacePoint>& surface, const PosePrior& prior,
+                               const PredictedStep& step, const ScanAlignment& so_far) {
   std::vector<Point2> known, points;
   map_.for_each([&](const SurfaceMap::Surface& s) {
     if ((s.p - prior.T_map_robot.translation()).norm() < params_.points.farthest_m) known.push_back(s.p);

@@ -11,12 +11,12 @@ namespace smokemap {
 
 /// What became of a scan. A scan without a match still moves the robot: by odometry, or by its last velocity.
 enum class ScanFate : std::uint8_t {
-  kMatched,        ///< pose from the match
-  kFirst,          ///< the first scan defines the map
-  kTooFewPoints,   ///< nearly all beams without information (smoke, open space): pose from the prediction
-  kPoorMatch,      ///< did not fit the map: pose from the prediction
-  kNewPiece,       ///< nothing had fitted for a while: a new piece of map begins here, tied by the prediction only
-  kDuplicate,      ///< same stamp and same ranges as the scan before: ignored
+  kMatched,       ///< pose from the match
+  kFirst,         ///< the first scan defines the map
+  kTooFewPoints,  ///< nearly all beams without information (smoke, open space): pose from the prediction
+  kPoorMatch,     ///< did not fit the map: pose from the prediction
+  kNewPiece,      ///< nothing had fitted for a while: a new piece of map begins here, tied by the prediction only
+  kDuplicate,     ///< same stamp and same ranges as the scan before: ignored
 };
 
 /// The fast half: one scan after another against a local map of the last nodes, in a frame `track` that is smooth and
@@ -27,8 +27,8 @@ class FrontEnd {
     ScanFate fate = ScanFate::kMatched;
     Pose2 T_track_robot;
     double score = 0;
-    bool node = false;                ///< the scan joined the local map and belongs into the graph
-    Pose2 T_node_robot;               ///< from the last node (before this one, if this is one)
+    bool node = false;                                     ///< the scan joined the local map and belongs into the graph
+    Pose2 T_node_robot;                                    ///< from the last node (before this one, if this is one)
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of T_node_robot, frame of that node
     EdgeKind kind = EdgeKind::kMatched;
   };
@@ -47,7 +47,8 @@ class FrontEnd {
   bool believable(const ScanAlignment& found, const Pose2& predicted, const PredictedStep& step) const;
   Tracked go_on_blindly(const ScanPoints& points, const Pose2& predicted, const PredictedStep& step, double score);
   bool search_needed(const PredictedStep& step, double score) const;
-  ScanAlignment search(const std::vector<SurfacePoint>& surface, const PosePrior& prior, const PredictedStep& step, const ScanAlignment& so_far);
+  ScanAlignment search(const std::vector<SurfacePoint>& surface, const PosePrior& prior, const PredictedStep& step,
+                       const ScanAlignment& so_far);
   bool far_from_last_node() const;
   void keep(const ScanPoints& points);
   void rebuild_map();
@@ -60,7 +61,8 @@ class FrontEnd {
   std::deque<Node> nodes_;
   int nodes_since_rebuild_ = 0;
   Pose2 T_track_robot_;
-  Eigen::Matrix3d blind_covariance_ = Eigen::Matrix3d::Zero();  ///< of predicted steps since the last match, track frame
+  Eigen::Matrix3d blind_covariance_ =
+      Eigen::Matrix3d::Zero();  ///< of predicted steps since the last match, track frame
   int poor_in_a_row_ = 0;
   double usual_score_ = 0;
   bool started_ = false;

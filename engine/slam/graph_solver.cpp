@@ -22,7 +22,8 @@ Result<ceres::Solver::Summary> solve_once(const PoseGraph& graph, State& state, 
   for (const PoseEdge& edge : graph.edges) {
     auto* cost = new GraphEdgeCost(edge.T_from_to, edge.sqrt_information);
     problem.AddResidualBlock(cost, edge.kind == EdgeKind::kLoop ? &robust : nullptr,
-                             state[static_cast<std::size_t>(edge.from)].data(), state[static_cast<std::size_t>(edge.to)].data());
+                             state[static_cast<std::size_t>(edge.from)].data(),
+                             state[static_cast<std::size_t>(edge.to)].data());
   }
   if (problem.HasParameterBlock(state.front().data())) problem.SetParameterBlockConstant(state.front().data());
   ceres::Solver::Options options;
@@ -45,7 +46,9 @@ int judge_loops(PoseGraph& graph) {
     if (edge.kind != EdgeKind::kLoop) continue;
     const double error = edge_error_sigmas(edge, graph.nodes[static_cast<std::size_t>(edge.from)].T_map_robot,
                                            graph.nodes[static_cast<std::size_t>(edge.to)].T_map_robot);
-    edge.state = error > kRejectedSigmas ? LinkState::kRejected : error > kDoubtfulSigmas ? LinkState::kDoubtful : LinkState::kKept;
+    edge.state = error > kRejectedSigmas   ? LinkState::kRejected
+                 : error > kDoubtfulSigmas ? LinkState::kDoubtful
+                                           : LinkState::kKept;
     rejected += edge.state == LinkState::kRejected;
   }
   return rejected;

@@ -14,10 +14,10 @@ struct SolveSummary {
   int rejected = 0;  ///< loop edges that the others outvoted in this solve
 };
 
-/// Moves the nodes onto their edges; the first node stays where it is. Loop edges have a Cauchy kernel, wide at first and
-/// narrowed in rounds, so that a wrong loop cannot hold what many right ones deny; loops that end far outside are marked
-/// kRejected, far but near enough kDoubtful. Rejected edges take part in the next solve again, with the same kernel.
-/// kNotConverged when Ceres gave no usable answer, kCancelled when asked to stop: the graph is untouched then.
+/// Moves the nodes onto their edges; the first node stays where it is. Loop edges have a Cauchy kernel, wide at first
+/// and narrowed in rounds, so that a wrong loop cannot hold what many right ones deny; loops that end far outside are
+/// marked kRejected, far but near enough kDoubtful. Rejected edges take part in the next solve again, with the same
+/// kernel. kNotConverged when Ceres gave no usable answer, kCancelled when asked to stop: the graph is untouched then.
 Result<SolveSummary> solve_pose_graph(PoseGraph& graph, const GraphParams& params, const Progress& progress = {});
 
 /// How many standard deviations an edge is from its nodes' poses.

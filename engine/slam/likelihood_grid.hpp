@@ -23,7 +23,8 @@ class LikelihoodGrid {
     const Level& l = levels_[static_cast<std::size_t>(level)];
     const int column = x + l.pad, row = y + l.pad;
     if (column < 0 || row < 0 || column >= l.width || row >= l.height) return 0;
-    return l.value[static_cast<std::size_t>(row) * static_cast<std::size_t>(l.width) + static_cast<std::size_t>(column)];
+    return l
+        .value[static_cast<std::size_t>(row) * static_cast<std::size_t>(l.width) + static_cast<std::size_t>(column)];
   }
 
  private:

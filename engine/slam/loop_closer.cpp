@@ -10,7 +10,7 @@ namespace smokemap {
 namespace {
 
 constexpr double kTargetHalfSize_m = 25.0;
-constexpr int kTargetNodes = 12;           ///< each way along the old visit
+constexpr int kTargetNodes = 12;  ///< each way along the old visit
 constexpr double kTargetReach_m = 5.0;
 constexpr std::size_t kMostCandidates = 2;
 constexpr double kAgree_m = 0.20;
@@ -34,7 +34,8 @@ LoopCloser::Found LoopCloser::close(const PoseGraph& graph, const NodeScans& sca
 }
 
 /// Nearest old visits first, measured in radii; one candidate per visit.
-std::vector<LoopCloser::Candidate> LoopCloser::candidates(const PoseGraph& graph, const NodeScans& scans, int node) const {
+std::vector<LoopCloser::Candidate> LoopCloser::candidates(const PoseGraph& graph, const NodeScans& scans,
+                                                          int node) const {
   const LoopParams& limits = params_.loops;
   const std::vector<double> distance = graph_distances(graph, scans, node, 1.0);
   const Point2 here = graph.nodes[index(node)].T_map_robot.translation();
@@ -59,7 +60,8 @@ std::vector<LoopCloser::Candidate> LoopCloser::candidates(const PoseGraph& graph
   return chosen;
 }
 
-bool LoopCloser::try_candidate(const PoseGraph& graph, const NodeScans& scans, int node, const Candidate& candidate, Found& found) {
+bool LoopCloser::try_candidate(const PoseGraph& graph, const NodeScans& scans, int node, const Candidate& candidate,
+                               Found& found) {
   const LoopParams& limits = params_.loops;
   draw_target(graph, scans, node, candidate.node, candidate.radius_m);
   const std::vector<SurfacePoint> joint = joint_scan(graph, scans, node);
@@ -83,7 +85,8 @@ bool LoopCloser::try_candidate(const PoseGraph& graph, const NodeScans& scans, i
                                                kSigmaLoop_m, kSigmaLoop_rad);
   if (!sqrt_info) return false;
   --found.rejected;
-  found.edges.push_back({candidate.node, node, T_map_old.inverse() * fine.T_map_robot, *sqrt_info, EdgeKind::kLoop, LinkState::kKept});
+  found.edges.push_back(
+      {candidate.node, node, T_map_old.inverse() * fine.T_map_robot, *sqrt_info, EdgeKind::kLoop, LinkState::kKept});
   return true;
 }
 
@@ -110,18 +113,22 @@ std::vector<SurfacePoint> LoopCloser::joint_scan(const PoseGraph& graph, const N
   return joint;
 }
 
-bool LoopCloser::singles_agree(const PoseGraph& graph, const NodeScans& scans, int node, const Pose2& T_map_node) const {
+bool LoopCloser::singles_agree(const PoseGraph& graph, const NodeScans& scans, int node,
+                               const Pose2& T_map_node) const {
   int agree = 0, asked = 0;
   for (int i = node; i > std::max(-1, node - params_.loops.joint_nodes); i -= 2) {
-    const Pose2 expected = T_map_node * (graph.nodes[index(node)].T_map_robot.inverse() * graph.nodes[index(i)].T_map_robot);
+    const Pose2 expected =
+        T_map_node * (graph.nodes[index(node)].T_map_robot.inverse() * graph.nodes[index(i)].T_map_robot);
     const ScanAlignment alone = align(scans.surface[index(i)], target_, expected, params_.align);
     const Pose2 off = expected.inverse() * alone.T_map_robot;
     // Along a corridor a single scan may slide: only what its points measure can disagree.
     Eigen::Vector3d error = (alone.T_map_robot.vector() - expected.vector());
     error.z() = wrap_angle(error.z());
-    const double pull = std::sqrt(std::max(0.0, error.dot(alone.information * error)) / std::max(1, alone.matched)) * params_.align.sigma_point_m;
+    const double pull = std::sqrt(std::max(0.0, error.dot(alone.information * error)) / std::max(1, alone.matched)) *
+                        params_.align.sigma_point_m;
     ++asked;
-    agree += alone.score >= 0.8 * params_.loops.least_align_score && pull < 0.5 * kAgree_m && off.translation().norm() < 2 * kAgree_m && std::abs(off.heading()) < kAgree_rad;
+    agree += alone.score >= 0.8 * params_.loops.least_align_score && pull < 0.5 * kAgree_m &&
+             off.translation().norm() < 2 * kAgree_m && std::abs(off.heading()) < kAgree_rad;
   }
   return agree == asked;
 }

@@ -8,8 +8,8 @@
 namespace smokemap {
 
 /// Finds where a node sees what much older nodes saw. The last few nodes are searched as one scan, by branch and bound,
-/// inside a window that grows with the way through the graph between the two visits; a find counts only if it fits well,
-/// fits in one place only, and if single scans of the group, matched alone, agree with it.
+/// inside a window that grows with the way through the graph between the two visits; a find counts only if it fits
+/// well, fits in one place only, and if single scans of the group, matched alone, agree with it.
 class LoopCloser {
  public:
   explicit LoopCloser(const SlamParams& params);
@@ -29,7 +29,8 @@ class LoopCloser {
     double half_rad = 0;
   };
   std::vector<Candidate> candidates(const PoseGraph& graph, const NodeScans& scans, int node) const;
-  bool try_candidate(const PoseGraph& graph, const NodeScans& scans, int node, const Candidate& candidate, Found& found);
+  bool try_candidate(const PoseGraph& graph, const NodeScans& scans, int node, const Candidate& candidate,
+                     Found& found);
   void draw_target(const PoseGraph& graph, const NodeScans& scans, int node, int around, double radius_m);
   std::vector<SurfacePoint> joint_scan(const PoseGraph& graph, const NodeScans& scans, int node) const;
   bool singles_agree(const PoseGraph& graph, const NodeScans& scans, int node, const Pose2& T_map_node) const;

@@ -21,7 +21,8 @@ std::optional<Pose2> OdometryBuffer::at(Stamp stamp) const {
   for (auto later = readings_.rbegin(); later + 1 != readings_.rend(); ++later) {
     const auto earlier = later + 1;
     if (earlier->stamp > stamp || later->stamp < stamp) continue;
-    const double share = static_cast<double>(stamp - earlier->stamp) / static_cast<double>(later->stamp - earlier->stamp);
+    const double share =
+        static_cast<double>(stamp - earlier->stamp) / static_cast<double>(later->stamp - earlier->stamp);
     return interpolate(earlier->T_odom_robot, later->T_odom_robot, share);
   }
   const double ahead = to_seconds(stamp - readings_.back().stamp);
@@ -45,8 +46,8 @@ Twist2 twist_of(const Pose2& T_before_now, double seconds) {
   return {T_before_now.translation() / seconds, T_before_now.heading() / seconds};
 }
 
-PredictedStep predict_step(const std::optional<Pose2>& T_odom_before, const std::optional<Pose2>& T_odom_now, double seconds,
-                           const std::optional<Twist2>& last_twist, const FrontEndParams& params) {
+PredictedStep predict_step(const std::optional<Pose2>& T_odom_before, const std::optional<Pose2>& T_odom_now,
+                           double seconds, const std::optional<Twist2>& last_twist, const FrontEndParams& params) {
   PredictedStep step;
   const double elapsed = std::max(0.0, seconds);
   if (T_odom_before && T_odom_now) {

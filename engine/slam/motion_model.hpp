@@ -9,8 +9,8 @@
 
 namespace smokemap {
 
-/// Odometry readings kept in order of arrival, asked for the pose at a scan's stamp. Stamps may step back: an exact stamp
-/// wins, else the newest pair around it, else the newest reading, moved on by its own speed for at most 0.5 s.
+/// Odometry readings kept in order of arrival, asked for the pose at a scan's stamp. Stamps may step back: an exact
+/// stamp wins, else the newest pair around it, else the newest reading, moved on by its own speed for at most 0.5 s.
 class OdometryBuffer {
  public:
   void add(const Odometry& reading);
@@ -30,12 +30,12 @@ struct PredictedStep {
   double sigma_m = 0;
   double sigma_rad = 0;
   bool by_odometry = false;
-  bool jumped = false;   ///< odometry moved faster than a robot can: the step is not to be believed
+  bool jumped = false;  ///< odometry moved faster than a robot can: the step is not to be believed
 };
 
 /// The step since the scan before, from odometry; without it by the velocity of the last matched step.
-PredictedStep predict_step(const std::optional<Pose2>& T_odom_before, const std::optional<Pose2>& T_odom_now, double seconds,
-                           const std::optional<Twist2>& last_twist, const FrontEndParams& params);
+PredictedStep predict_step(const std::optional<Pose2>& T_odom_before, const std::optional<Pose2>& T_odom_now,
+                           double seconds, const std::optional<Twist2>& last_twist, const FrontEndParams& params);
 
 /// The constant motion that makes a step in the given time; zero for no time.
 Twist2 twist_of(const Pose2& T_before_now, double seconds);

@@ -13,8 +13,8 @@ struct NodeScans {
   std::vector<double> way_m;                       ///< driven until the node
 };
 
-/// Covariance of a match as an edge needs it: information of (x, y, heading) given in the map frame, turned into the frame
-/// of a node with heading `heading`, and softened by sigmas that stand for the target's own errors.
+/// Covariance of a match as an edge needs it: information of (x, y, heading) given in the map frame, turned into the
+/// frame of a node with heading `heading`, and softened by sigmas that stand for the target's own errors.
 Result<Eigen::Matrix3d> edge_sqrt_information(const Eigen::Matrix3d& information_map, double heading, double sigma_m,
                                               double sigma_rad);
 

@@ -48,7 +48,8 @@ std::vector<int> PairMatcher::partners(const PoseGraph& graph, const NodeScans& 
   return chosen;
 }
 
-std::vector<PoseEdge> PairMatcher::match(const PoseGraph& graph, const NodeScans& scans, int first_node, const Progress& progress) {
+std::vector<PoseEdge> PairMatcher::match(const PoseGraph& graph, const NodeScans& scans, int first_node,
+                                         const Progress& progress) {
   const int count = static_cast<int>(graph.nodes.size());
   std::vector<std::vector<int>> sources(graph.nodes.size());  // by target: each target's map is made once
   for (int i = std::max(1, first_node); i < count; ++i)
@@ -69,10 +70,11 @@ std::vector<PoseEdge> PairMatcher::match(const PoseGraph& graph, const NodeScans
       if (found.score < params_.graph.least_pair_score || moved.translation().norm() > kLargestCorrection_m ||
           std::abs(moved.heading()) > kLargestCorrection_rad)
         continue;
-      const auto sqrt_info = edge_sqrt_information(params_.graph.pair_information * found.information, T_map_j.heading(),
-                                                   kSigmaPair_m, kSigmaPair_rad);
+      const auto sqrt_info = edge_sqrt_information(params_.graph.pair_information * found.information,
+                                                   T_map_j.heading(), kSigmaPair_m, kSigmaPair_rad);
       if (sqrt_info)
-        edges.push_back({j, i, T_map_j.inverse() * found.T_map_robot, *sqrt_info, EdgeKind::kMatched, LinkState::kKept});
+        edges.push_back(
+            {j, i, T_map_j.inverse() * found.T_map_robot, *sqrt_info, EdgeKind::kMatched, LinkState::kKept});
     }
   }
   return edges;

@@ -18,11 +18,14 @@ struct Block {
 class Search {
  public:
   Search(const std::vector<Point2>& points, const LikelihoodGrid& grid, const SearchWindow& window)
-      : grid_(grid), window_(window), half_cells_(static_cast<int>(std::ceil(window.half_m / grid.frame().resolution_m))) {
+      : grid_(grid),
+        window_(window),
+        half_cells_(static_cast<int>(std::ceil(window.half_m / grid.frame().resolution_m))) {
     double farthest = grid.frame().resolution_m;
     for (const Point2& p : points) farthest = std::max(farthest, p.norm());
     step_rad_ = 2 * std::asin(std::min(1.0, 0.5 * grid.frame().resolution_m / farthest));
-    half_angles_ = std::min(static_cast<int>(std::ceil(window.half_rad / step_rad_)), static_cast<int>(kPi / step_rad_));
+    half_angles_ =
+        std::min(static_cast<int>(std::ceil(window.half_rad / step_rad_)), static_cast<int>(kPi / step_rad_));
     for (int a = -half_angles_; a <= half_angles_; ++a) {
       const Pose2 turned(window.T_map_robot.translation(), window.T_map_robot.heading() + a * step_rad_);
       std::vector<Cell>& cells = cells_.emplace_back();
@@ -110,7 +113,8 @@ std::optional<SearchResult> search_pose(const std::vector<Point2>& points_robot,
   if (apart_m <= 0) return result;
   const int apart_cells = std::max(1, static_cast<int>(std::round(apart_m / grid.frame().resolution_m)));
   // Only a runner-up that comes near the winner is of interest: bounding it keeps the second search short.
-  const auto second = search.best(std::max(least, static_cast<std::int64_t>(0.8 * static_cast<double>(best->bound))), &*best, apart_cells);
+  const auto second = search.best(std::max(least, static_cast<std::int64_t>(0.8 * static_cast<double>(best->bound))),
+                                  &*best, apart_cells);
   if (second) result.runner_up_score = static_cast<double>(second->bound) / most;
   return result;
 }

@@ -10,14 +10,14 @@ namespace smokemap {
 /// The box of poses around a guess that is searched.
 struct SearchWindow {
   Pose2 T_map_robot;
-  double half_m = 0.3;    ///< each way in x and y
+  double half_m = 0.3;  ///< each way in x and y
   double half_rad = 0.35;
 };
 
 struct SearchResult {
   Pose2 T_map_robot;
-  double score = 0;             ///< mean likelihood of the points, 0 .. 1
-  double runner_up_score = 0;   ///< best score at least `apart_m` away; 0 when not asked for or below the least score
+  double score = 0;            ///< mean likelihood of the points, 0 .. 1
+  double runner_up_score = 0;  ///< best score at least `apart_m` away; 0 when not asked for or below the least score
 };
 
 /// The pose in the window at which the points score best, on the lattice of whole cells and of angles at which the

@@ -13,7 +13,8 @@ namespace {
 class EchoGrid {
  public:
   EchoGrid(const std::vector<RadarEcho>& echoes, double cell_m) : echoes_(echoes), cell_m_(cell_m) {
-    for (std::size_t i = 0; i < echoes.size(); ++i) cells_[key(column(echoes[i].p.x()), column(echoes[i].p.y()))].push_back(i);
+    for (std::size_t i = 0; i < echoes.size(); ++i)
+      cells_[key(column(echoes[i].p.x()), column(echoes[i].p.y()))].push_back(i);
   }
   template <typename Visit>
   void around(const Point2& p, Visit&& visit) const {
@@ -61,7 +62,9 @@ std::vector<RadarEcho> strongest_echoes(const RadarSweep& sweep, const Twist2& t
     for (int b = 1; b + 1 < sweep.bins; ++b) {
       const double range = sweep.range_min_m + b * sweep.range_resolution_m;
       if (range < params.nearest_m || range > params.farthest_m) continue;
-      if (std::isfinite(power[b]) && power[b] >= params.least_power && power[b] >= power[b - 1] && power[b] > power[b + 1]) peaks.push_back(b);
+      if (std::isfinite(power[b]) && power[b] >= params.least_power && power[b] >= power[b - 1] &&
+          power[b] > power[b + 1])
+        peaks.push_back(b);
     }
     std::stable_sort(peaks.begin(), peaks.end(), [&](int i, int j) { return power[i] > power[j]; });
     peaks.resize(std::min(peaks.size(), static_cast<std::size_t>(params.strongest)));
@@ -76,7 +79,8 @@ std::vector<RadarEcho> strongest_echoes(const RadarSweep& sweep, const Twist2& t
   return echoes;
 }
 
-ScanPoints surface_points(const RadarSweep& sweep, const Twist2& twist, const RadarParams& radar, const PointParams& points) {
+ScanPoints surface_points(const RadarSweep& sweep, const Twist2& twist, const RadarParams& radar,
+                          const PointParams& points) {
   const std::vector<RadarEcho> echoes = strongest_echoes(sweep, twist, radar);
   const EchoGrid near(echoes, radar.surface_radius_m), crowded(echoes, radar.spacing_m);
   const Point2 p_sensor = sweep.T_robot_radar.translation();
@@ -85,10 +89,12 @@ ScanPoints surface_points(const RadarSweep& sweep, const Twist2& twist, const Ra
   std::vector<bool> drawn(static_cast<std::size_t>(sweep.azimuths), false);
   std::vector<const RadarEcho*> kept;
   for (const RadarEcho& echo : echoes) {  // strongest first within an azimuth
-    const bool close = std::any_of(kept.begin(), kept.end(), [&](const RadarEcho* k) { return (k->p - echo.p).norm() < radar.spacing_m; });
+    const bool close = std::any_of(kept.begin(), kept.end(),
+                                   [&](const RadarEcho* k) { return (k->p - echo.p).norm() < radar.spacing_m; });
     if (!close) kept.push_back(&echo);
   }
-  std::stable_sort(kept.begin(), kept.end(), [](const RadarEcho* a, const RadarEcho* b) { return a->weight > b->weight; });
+  std::stable_sort(kept.begin(), kept.end(),
+                   [](const RadarEcho* a, const RadarEcho* b) { return a->weight > b->weight; });
   for (const RadarEcho* echo : kept) {
     if (out.surface.size() == static_cast<std::size_t>(points.most_points)) break;
     const SurfacePoint point = surface_around(near, *echo, p_sensor);

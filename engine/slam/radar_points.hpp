@@ -22,6 +22,7 @@ std::vector<RadarEcho> strongest_echoes(const RadarSweep& sweep, const Twist2& t
 /// Weighted oriented surface points for the matcher: mean and main direction of the echoes around each thinned one.
 /// Hits to draw are echoes on a surface, nearest of their azimuth; a radar clears nothing: no free ends.
 /// Source: CFEAR (Adolfsson et al., T-RO 2023), lengths for rooms instead of streets.
-ScanPoints surface_points(const RadarSweep& sweep, const Twist2& twist, const RadarParams& radar, const PointParams& points);
+ScanPoints surface_points(const RadarSweep& sweep, const Twist2& twist, const RadarParams& radar,
+                          const PointParams& points);
 
 }  // namespace smokemap

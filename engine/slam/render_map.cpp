@@ -57,7 +57,8 @@ void MapRenderer::draw(const Drawn& what, bool add) {
     for (const Point2& p_robot : *points) put(Point2(R * p_robot + origin));
   };
   each(what.hits_robot, [&](const Point2& end) { add ? grid_.add_hit(origin, end) : grid_.remove_hit(origin, end); });
-  each(what.free_ends_robot, [&](const Point2& end) { add ? grid_.add_free(origin, end) : grid_.remove_free(origin, end); });
+  each(what.free_ends_robot,
+       [&](const Point2& end) { add ? grid_.add_free(origin, end) : grid_.remove_free(origin, end); });
 }
 
 OccupancyGrid render_map(const PoseGraph& graph, const std::vector<Pose2>& T_map_nodes, const RenderParams& params) {

@@ -11,7 +11,7 @@ namespace smokemap {
 struct RenderParams {
   double resolution_m = 0.05;
   LogOddsParams evidence;
-  double moved_m = 0.02;      ///< a node whose pose moved less keeps what it drew
+  double moved_m = 0.02;  ///< a node whose pose moved less keeps what it drew
   double moved_rad = 0.003;
   Result<Ok> validate() const;
 };
@@ -19,10 +19,11 @@ struct RenderParams {
 /// What the sensors saw, drawn from the graph: every hit of every node traced from where the robot stood.
 /// @param T_map_nodes  one pose a node, in the order of graph.nodes; empty = the poses in the graph
 /// Cost: about 0.1 ms a node (180 beams of 5 m at 0.05 m).
-OccupancyGrid render_map(const PoseGraph& graph, const std::vector<Pose2>& T_map_nodes = {}, const RenderParams& params = {});
+OccupancyGrid render_map(const PoseGraph& graph, const std::vector<Pose2>& T_map_nodes = {},
+                         const RenderParams& params = {});
 
-/// The same kept up to date: draws new nodes, and nodes that moved by more than the tolerance again (their old beams are
-/// taken back exactly), nothing else. After any updates with zero tolerance the grid equals a full drawing.
+/// The same kept up to date: draws new nodes, and nodes that moved by more than the tolerance again (their old beams
+/// are taken back exactly), nothing else. After any updates with zero tolerance the grid equals a full drawing.
 class MapRenderer {
  public:
   explicit MapRenderer(const RenderParams& params = {});

@@ -26,12 +26,18 @@ struct Anchor {
 
 const char* to_string(ScanFate fate) {
   switch (fate) {
-    case ScanFate::kMatched: return "matched";
-    case ScanFate::kFirst: return "first";
-    case ScanFate::kTooFewPoints: return "too_few_points";
-    case ScanFate::kPoorMatch: return "poor_match";
-    case ScanFate::kNewPiece: return "new_piece";
-    case ScanFate::kDuplicate: return "duplicate";
+    case ScanFate::kMatched:
+      return "matched";
+    case ScanFate::kFirst:
+      return "first";
+    case ScanFate::kTooFewPoints:
+      return "too_few_points";
+    case ScanFate::kPoorMatch:
+      return "poor_match";
+    case ScanFate::kNewPiece:
+      return "new_piece";
+    case ScanFate::kDuplicate:
+      return "duplicate";
   }
   broken_promise("a known ScanFate", __FILE__, __LINE__);
 }
@@ -66,15 +72,15 @@ class Slam::Impl {
   Twist2 twist_for_straightening() const { return odometry_.twist().value_or(twist_.value_or(Twist2{})); }
 
   OdometryBuffer odometry_;
-  std::optional<Pose2> T_odom_last_;    ///< odometry at the last scan
-  std::optional<Twist2> twist_;         ///< of the last matched step
+  std::optional<Pose2> T_odom_last_;  ///< odometry at the last scan
+  std::optional<Twist2> twist_;       ///< of the last matched step
   std::optional<Stamp> last_stamp_;
   std::vector<float> last_ranges_;
   std::optional<RadarSweep> last_sweep_;
   std::optional<Pose2> T_odom_sweep_;
   bool has_lidar_ = false;
-  std::vector<Anchor> anchors_;         ///< one per scan
-  std::vector<Pose2> T_track_nodes_;    ///< where the front end put each node
+  std::vector<Anchor> anchors_;       ///< one per scan
+  std::vector<Pose2> T_track_nodes_;  ///< where the front end put each node
   Pose2 T_odom_robot_;
 };
 
@@ -91,7 +97,8 @@ Result<ScanOutcome> Slam::Impl::add_scan(const LaserScan& scan) {
     return ScanOutcome{scan.stamp, ScanFate::kDuplicate, latest(), std::nullopt, 0};
   }
   last_ranges_ = scan.ranges_m;
-  const ScanPoints points = surface_points(scan, params_.beams, twist_for_straightening(), params_.points, smoke_in(scan));
+  const ScanPoints points =
+      surface_points(scan, params_.beams, twist_for_straightening(), params_.points, smoke_in(scan));
   return add_points(scan.stamp, scan.robot, points);
 }
 
@@ -106,14 +113,16 @@ Result<ScanOutcome> Slam::Impl::add_sweep(const RadarSweep& sweep) {
     T_odom_sweep_ = odometry_.at(sweep.stamp);
     return ScanOutcome{sweep.stamp, ScanFate::kMatched, latest(), std::nullopt, 0};
   }
-  return add_points(sweep.stamp, sweep.robot, surface_points(sweep, twist_for_straightening(), params_.radar, params_.points));
+  return add_points(sweep.stamp, sweep.robot,
+                    surface_points(sweep, twist_for_straightening(), params_.radar, params_.points));
 }
 
 /// Beams that the newest sweep calls smoke; none when there is no fresh sweep.
 std::vector<bool> Slam::Impl::smoke_in(const LaserScan& scan) {
   if (!last_sweep_ || std::abs(to_seconds(scan.stamp - last_sweep_->stamp)) > kSweepIsFresh_s) return {};
   Pose2 T_now_then;
-  if (const auto T_odom_now = odometry_.at(scan.stamp); T_odom_now && T_odom_sweep_) T_now_then = T_odom_now->inverse() * *T_odom_sweep_;
+  if (const auto T_odom_now = odometry_.at(scan.stamp); T_odom_now && T_odom_sweep_)
+    T_now_then = T_odom_now->inverse() * *T_odom_sweep_;
   std::vector<bool> smoke = smoke_beams(scan, params_.beams, *last_sweep_, T_now_then, params_.radar);
   counters_.smoke_beams += std::count(smoke.begin(), smoke.end(), true);
   return smoke;
@@ -137,19 +146,22 @@ ScanOutcome Slam::Impl::add_points(Stamp stamp, const std::string& robot, const 
   const Pose2 T_track_before = front_.T_track_robot();
   const FrontEnd::Tracked tracked = front_.track(points, step);
   last_stamp_ = stamp;
-  if (tracked.fate == ScanFate::kMatched && seconds > 1e-3) twist_ = twist_of(T_track_before.inverse() * tracked.T_track_robot, seconds);
+  if (tracked.fate == ScanFate::kMatched && seconds > 1e-3)
+    twist_ = twist_of(T_track_before.inverse() * tracked.T_track_robot, seconds);
   count(tracked.fate);
   ScanOutcome outcome{stamp, tracked.fate, {}, std::nullopt, tracked.score};
   if (tracked.node) {
     keep_node(stamp, robot, points, tracked);
     outcome.node = back_.graph().nodes.back().id;
   }
-  anchors_.push_back({stamp, tracked.T_track_robot, std::max(0, static_cast<int>(T_track_nodes_.size()) - 1), tracked.covariance});
+  anchors_.push_back(
+      {stamp, tracked.T_track_robot, std::max(0, static_cast<int>(T_track_nodes_.size()) - 1), tracked.covariance});
   outcome.pose = latest();
   return outcome;
 }
 
-void Slam::Impl::keep_node(Stamp stamp, const std::string& robot, const ScanPoints& points, const FrontEnd::Tracked& tracked) {
+void Slam::Impl::keep_node(Stamp stamp, const std::string& robot, const ScanPoints& points,
+                           const FrontEnd::Tracked& tracked) {
   PoseNode node;
   node.robot = robot;
   node.stamp = stamp;
@@ -179,7 +191,8 @@ Pose2 Slam::Impl::pose_of(const Anchor& anchor) const {
   const auto i = static_cast<std::size_t>(anchor.node);
   const Pose2 from_last = back_.graph().nodes[i].T_map_robot * (T_track_nodes_[i].inverse() * anchor.T_track_robot);
   if (i + 1 >= T_track_nodes_.size()) return from_last;
-  const Pose2 from_next = back_.graph().nodes[i + 1].T_map_robot * (T_track_nodes_[i + 1].inverse() * anchor.T_track_robot);
+  const Pose2 from_next =
+      back_.graph().nodes[i + 1].T_map_robot * (T_track_nodes_[i + 1].inverse() * anchor.T_track_robot);
   const auto away = [&](std::size_t node) {
     const Pose2 step = T_track_nodes_[node].inverse() * anchor.T_track_robot;
     return step.translation().norm() + 0.5 * std::abs(step.heading());

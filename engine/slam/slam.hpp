@@ -21,27 +21,27 @@ const char* to_string(ScanFate fate);
 struct ScanOutcome {
   Stamp stamp = 0;
   ScanFate fate = ScanFate::kMatched;
-  StampedPose pose;                ///< in map, with covariance since the last node
-  std::optional<int> node;         ///< id of the graph node that was kept for this scan
-  double score = 0;                ///< share of points that found their wall, 0 .. 1
+  StampedPose pose;         ///< in map, with covariance since the last node
+  std::optional<int> node;  ///< id of the graph node that was kept for this scan
+  double score = 0;         ///< share of points that found their wall, 0 .. 1
 };
 
 struct SlamCounters {
   std::int64_t scans = 0;
   std::int64_t sweeps = 0;
   std::int64_t odometry = 0;
-  std::int64_t malformed = 0;        ///< rejected by check()
+  std::int64_t malformed = 0;  ///< rejected by check()
   std::int64_t duplicates = 0;
   std::int64_t too_few_points = 0;
   std::int64_t poor_matches = 0;
-  std::int64_t stamps_back = 0;      ///< scans stamped before the scan before them (still used)
-  std::int64_t jumps = 0;            ///< odometry jumped farther than a robot can drive; bridged by the match
-  std::int64_t without_odometry = 0; ///< predicted from the last velocity
-  std::int64_t lost = 0;             ///< new pieces of map begun because nothing fitted for a while
-  std::int64_t smoke_beams = 0;      ///< lidar echoes the radar saw through
+  std::int64_t stamps_back = 0;       ///< scans stamped before the scan before them (still used)
+  std::int64_t jumps = 0;             ///< odometry jumped farther than a robot can drive; bridged by the match
+  std::int64_t without_odometry = 0;  ///< predicted from the last velocity
+  std::int64_t lost = 0;              ///< new pieces of map begun because nothing fitted for a while
+  std::int64_t smoke_beams = 0;       ///< lidar echoes the radar saw through
   std::int64_t loops_tried = 0;
   std::int64_t loops_closed = 0;
-  std::int64_t loops_rejected = 0;   ///< found, then refused by verification or by the robust solve
+  std::int64_t loops_rejected = 0;  ///< found, then refused by verification or by the robust solve
 };
 
 /// SLAM of one robot: scans, sweeps and odometry in, poses and a pose graph out. Frames: map = pose of the first scan

@@ -92,7 +92,8 @@ Result<Ok> RadarParams::validate() const {
 }
 
 Result<Ok> SlamParams::validate() const {
-  for (const Result<Ok>& part : {points.validate(), align.validate(), front_end.validate(), loops.validate(), graph.validate(), radar.validate()})
+  for (const Result<Ok>& part : {points.validate(), align.validate(), front_end.validate(), loops.validate(),
+                                 graph.validate(), radar.validate()})
     if (!part) return part;
   return ParamCheck("SlamParams")
       .require("T_map_start", T_map_start.is_finite(), "must be finite")

@@ -8,9 +8,9 @@
 namespace smokemap {
 namespace {
 
-constexpr double kBehind_m = 0.60;       ///< an echo this far behind the lidar's is another surface
-constexpr double kSame_m = 0.35;         ///< an echo this near to the lidar's confirms it
-constexpr double kSector_rad = 0.175;    ///< half width
+constexpr double kBehind_m = 0.60;     ///< an echo this far behind the lidar's is another surface
+constexpr double kSame_m = 0.35;       ///< an echo this near to the lidar's confirms it
+constexpr double kSector_rad = 0.175;  ///< half width
 constexpr double kSmokeShare = 0.60;
 
 enum class Opinion { kNone, kWall, kSmoke };
@@ -46,7 +46,8 @@ std::vector<bool> smoke_beams(const LaserScan& scan, const BeamConvention& conve
     const double range = static_cast<double>(scan.ranges_m[i]);
     if (classify(scan.ranges_m[i], scan, convention) != BeamKind::kHit || range < params.nearest_m) continue;
     const double angle = wrap_angle(scan.angle_min_rad + static_cast<double>(i) * scan.angle_increment_rad);
-    opinions[i] = ask(ranges_by_bearing, static_cast<std::size_t>((angle + kPi) / (2 * kPi) * kBearings) % kBearings, range);
+    opinions[i] =
+        ask(ranges_by_bearing, static_cast<std::size_t>((angle + kPi) / (2 * kPi) * kBearings) % kBearings, range);
   }
   const auto half = std::max<std::ptrdiff_t>(1, std::lround(kSector_rad / std::abs(scan.angle_increment_rad)));
   for (std::size_t i = 0; i < beams; ++i) {

@@ -9,8 +9,9 @@
 
 namespace smokemap {
 
-/// Lidar beams that end in smoke: the radar, whom smoke does not hinder, sees nothing at the lidar's range but something
-/// well behind it, and so it is for most beams around. Such an echo is neither a wall nor proof of free space.
+/// Lidar beams that end in smoke: the radar, whom smoke does not hinder, sees nothing at the lidar's range but
+/// something well behind it, and so it is for most beams around. Such an echo is neither a wall nor proof of free
+/// space.
 ///
 /// One flag a beam of the scan. Radars miss weak targets now and then: a single disagreement decides nothing, the share
 /// within a sector of +-10 degrees does.

@@ -36,10 +36,12 @@ void SurfaceMap::add(const std::vector<SurfacePoint>& points, const Pose2& T_map
     const double turned = std::atan2(n.y(), n.x()) + kPi + kPi / 8;
     const auto quarter = static_cast<std::int32_t>(turned / (kPi / 2)) % 4;
     std::int32_t at = heads_[static_cast<std::size_t>(cell)];
-    while (at >= 0 && cells_[static_cast<std::size_t>(at)].quarter != quarter) at = cells_[static_cast<std::size_t>(at)].next;
+    while (at >= 0 && cells_[static_cast<std::size_t>(at)].quarter != quarter)
+      at = cells_[static_cast<std::size_t>(at)].next;
     if (at < 0) {
       at = static_cast<std::int32_t>(cells_.size());
-      cells_.push_back({Point2::Zero(), Point2::Zero(), p, n, 0, heads_[static_cast<std::size_t>(cell)], cell, quarter});
+      cells_.push_back(
+          {Point2::Zero(), Point2::Zero(), p, n, 0, heads_[static_cast<std::size_t>(cell)], cell, quarter});
       heads_[static_cast<std::size_t>(cell)] = at;
     }
     Average& average = cells_[static_cast<std::size_t>(at)];
@@ -51,7 +53,8 @@ void SurfaceMap::add(const std::vector<SurfacePoint>& points, const Pose2& T_map
   }
 }
 
-bool SurfaceMap::nearest(const Point2& p, const Point2& normal, double gate_m, double least_cosine, Surface& found) const {
+bool SurfaceMap::nearest(const Point2& p, const Point2& normal, double gate_m, double least_cosine,
+                         Surface& found) const {
   const int x = column(p.x()), y = row(p.y());
   const int rings = static_cast<int>(std::ceil(gate_m / cell_m_));
   const bool any_direction = normal.squaredNorm() < 0.5;

@@ -7,8 +7,8 @@
 
 namespace smokemap {
 
-/// Oriented surface points of several scans in one frame, averaged per cell and per direction (four quarters, so that the
-/// two faces of a thin wall stay apart). Made for nearest-surface queries; built often, so memory is reused.
+/// Oriented surface points of several scans in one frame, averaged per cell and per direction (four quarters, so that
+/// the two faces of a thin wall stay apart). Made for nearest-surface queries; built often, so memory is reused.
 class SurfaceMap {
  public:
   struct Surface {

@@ -19,7 +19,7 @@ struct SurfacePoint {
 
 /// What one scan or sweep gives to matching and to the map, in the robot frame at the scan's stamp.
 struct ScanPoints {
-  std::vector<SurfacePoint> surface;  ///< for matching: thinned, at most params.most_points
+  std::vector<SurfacePoint> surface;                           ///< for matching: thinned, at most params.most_points
   std::shared_ptr<const std::vector<Point2>> hits_robot;       ///< for drawing
   std::shared_ptr<const std::vector<Point2>> free_ends_robot;  ///< ends of beams known free
 };

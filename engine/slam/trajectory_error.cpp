@@ -19,19 +19,22 @@ ErrorSpread spread_of(std::vector<double> errors) {
   spread.stddev = std::sqrt(squares / count);
   std::sort(errors.begin(), errors.end());
   spread.most = errors.back();
-  spread.median = errors.size() % 2 ? errors[errors.size() / 2] : 0.5 * (errors[errors.size() / 2 - 1] + errors[errors.size() / 2]);
+  spread.median =
+      errors.size() % 2 ? errors[errors.size() / 2] : 0.5 * (errors[errors.size() / 2 - 1] + errors[errors.size() / 2]);
   return spread;
 }
 
 Trajectory by_stamp(Trajectory poses) {
-  std::stable_sort(poses.begin(), poses.end(), [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; });
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; });
   return poses;
 }
 
 /// Index of the entry nearest in time; the earlier of two equally near.
 template <typename Stamped>
 std::size_t nearest_in_time(const std::vector<Stamped>& sorted, Stamp stamp) {
-  const auto after = std::lower_bound(sorted.begin(), sorted.end(), stamp, [](const Stamped& s, Stamp t) { return s.stamp < t; });
+  const auto after =
+      std::lower_bound(sorted.begin(), sorted.end(), stamp, [](const Stamped& s, Stamp t) { return s.stamp < t; });
   if (after == sorted.begin()) return 0;
   const auto i = static_cast<std::size_t>(after - sorted.begin());
   if (after == sorted.end() || stamp - sorted[i - 1].stamp <= after->stamp - stamp) return i - 1;
@@ -50,13 +53,15 @@ class PoseLookup {
       const StampedPose& pose = poses_[nearest_in_time(poses_, odometry[i].stamp)];
       if (apart_s(pose.stamp, odometry[i].stamp) < kSameStamp_s) estimated_.push_back({i, pose.T_map_robot});
     }
-    std::stable_sort(records_.begin(), records_.end(), [](const Record& a, const Record& b) { return a.stamp < b.stamp; });
+    std::stable_sort(records_.begin(), records_.end(),
+                     [](const Record& a, const Record& b) { return a.stamp < b.stamp; });
   }
 
   std::optional<Pose2> at(Stamp stamp) const {
     const StampedPose& nearest = poses_[nearest_in_time(poses_, stamp)];
     const double gap_s = apart_s(nearest.stamp, stamp);
-    if (gap_s <= kSameStamp_s || estimated_.empty()) return gap_s <= longest_gap_s_ ? std::optional(nearest.T_map_robot) : std::nullopt;
+    if (gap_s <= kSameStamp_s || estimated_.empty())
+      return gap_s <= longest_gap_s_ ? std::optional(nearest.T_map_robot) : std::nullopt;
     const Record& record = records_[nearest_in_time(records_, stamp)];
     if (apart_s(record.stamp, stamp) < kRecordStamp_s) return moved_by_odometry(record.index);
     return gap_s <= longest_gap_s_ ? std::optional(nearest.T_map_robot) : std::nullopt;
@@ -73,14 +78,16 @@ class PoseLookup {
   };
 
   Pose2 moved_by_odometry(std::size_t index) const {
-    const auto after = std::lower_bound(estimated_.begin(), estimated_.end(), index, [](const Estimated& e, std::size_t i) { return e.index < i; });
+    const auto after = std::lower_bound(estimated_.begin(), estimated_.end(), index,
+                                        [](const Estimated& e, std::size_t i) { return e.index < i; });
     const Estimated& next = after == estimated_.end() ? estimated_.back() : *after;
     const Estimated& last = after == estimated_.begin() ? next : *(after - 1);
     const auto carried = [&](const Estimated& from) {
       return from.T_map_robot * (odometry_[from.index].T_odom_robot.inverse() * odometry_[index].T_odom_robot);
     };
     if (next.index <= last.index) return carried(last);
-    return interpolate(carried(last), carried(next), static_cast<double>(index - last.index) / static_cast<double>(next.index - last.index));
+    return interpolate(carried(last), carried(next),
+                       static_cast<double>(index - last.index) / static_cast<double>(next.index - last.index));
   }
 
   Trajectory poses_;
@@ -92,11 +99,13 @@ class PoseLookup {
 
 /// The truth at a stamp, between its neighbours.
 Pose2 interpolated(const Trajectory& sorted, Stamp stamp) {
-  const auto after = std::lower_bound(sorted.begin(), sorted.end(), stamp, [](const StampedPose& s, Stamp t) { return s.stamp < t; });
+  const auto after =
+      std::lower_bound(sorted.begin(), sorted.end(), stamp, [](const StampedPose& s, Stamp t) { return s.stamp < t; });
   if (after == sorted.end()) return sorted.back().T_map_robot;
   if (after == sorted.begin() || after->stamp == stamp) return after->T_map_robot;
   const StampedPose& before = *(after - 1);
-  return interpolate(before.T_map_robot, after->T_map_robot, to_seconds(stamp - before.stamp) / to_seconds(after->stamp - before.stamp));
+  return interpolate(before.T_map_robot, after->T_map_robot,
+                     to_seconds(stamp - before.stamp) / to_seconds(after->stamp - before.stamp));
 }
 
 /// The rigid motion that takes `from` onto `to` in least squares.
@@ -141,12 +150,14 @@ Result<RelationError> relation_error(const Trajectory& estimate, const std::vect
   return result;
 }
 
-Result<AbsoluteError> absolute_error(const Trajectory& estimate, const Trajectory& truth, const Point2& p_robot_lever, double longest_gap_s) {
+Result<AbsoluteError> absolute_error(const Trajectory& estimate, const Trajectory& truth, const Point2& p_robot_lever,
+                                     double longest_gap_s) {
   const Trajectory sorted = by_stamp(truth);
   std::vector<Point2> ours, theirs;
   std::vector<double> turn_apart;
   for (const StampedPose& pose : estimate) {
-    if (sorted.empty() || apart_s(sorted[nearest_in_time(sorted, pose.stamp)].stamp, pose.stamp) > longest_gap_s) continue;
+    if (sorted.empty() || apart_s(sorted[nearest_in_time(sorted, pose.stamp)].stamp, pose.stamp) > longest_gap_s)
+      continue;
     const Pose2 real = interpolated(sorted, pose.stamp);
     ours.push_back(pose.T_map_robot * p_robot_lever);
     theirs.push_back(real.translation());
@@ -157,7 +168,8 @@ Result<AbsoluteError> absolute_error(const Trajectory& estimate, const Trajector
   AbsoluteError error;
   double squares = 0, turn_squares = 0;
   for (std::size_t i = 0; i < ours.size(); ++i) {
-    const double away = (T_truth_ours * ours[i] - theirs[i]).norm(), turned = wrap_angle(turn_apart[i] + T_truth_ours.heading());
+    const double away = (T_truth_ours * ours[i] - theirs[i]).norm(),
+                 turned = wrap_angle(turn_apart[i] + T_truth_ours.heading());
     squares += away * away;
     turn_squares += turned * turned;
     error.mean_m += away / static_cast<double>(ours.size());
@@ -170,7 +182,8 @@ Result<AbsoluteError> absolute_error(const Trajectory& estimate, const Trajector
   return error;
 }
 
-Result<DisplacementError> displacement_error(const Trajectory& estimate, const Trajectory& truth, double longest_gap_s) {
+Result<DisplacementError> displacement_error(const Trajectory& estimate, const Trajectory& truth,
+                                             double longest_gap_s) {
   const Trajectory ours = by_stamp(estimate), theirs = by_stamp(truth);
   std::vector<std::pair<const StampedPose*, const StampedPose*>> matched;
   std::vector<bool> used(theirs.size(), false);
@@ -182,7 +195,8 @@ Result<DisplacementError> displacement_error(const Trajectory& estimate, const T
       if (i < 0 || i >= static_cast<std::ptrdiff_t>(theirs.size())) return false;
       const auto at = static_cast<std::size_t>(i);
       if (apart_s(theirs[at].stamp, pose.stamp) > longest_gap_s) return false;
-      if (!used[at] && (!best || apart_s(theirs[at].stamp, pose.stamp) < apart_s(theirs[*best].stamp, pose.stamp))) best = at;
+      if (!used[at] && (!best || apart_s(theirs[at].stamp, pose.stamp) < apart_s(theirs[*best].stamp, pose.stamp)))
+        best = at;
       return true;
     };
     for (std::ptrdiff_t i = middle; consider(i);) ++i;

@@ -29,7 +29,8 @@ struct RelationError {
 ///
 /// Relation error: e = T_from_to^-1 * estimate, mean over all relations alike.
 /// Source: Kuemmerle et al., Autonomous Robots 27 (2009).
-/// @param odometry  readings in the order of the log; fill stamps between estimates: the poses before and after, moved by
+/// @param odometry  readings in the order of the log; fill stamps between estimates: the poses before and after, moved
+/// by
 ///                  odometry, blended. May be empty.
 /// @param longest_gap_s  a stamp farther than this from every estimate (and reading) is missing
 /// kDegenerate when no relation could be judged.
@@ -43,18 +44,19 @@ struct AbsoluteError {
 
 /// Distance from the truth after the best rigid alignment. `p_robot_lever`: the truth is the pose of this point of the
 /// robot. kDegenerate with fewer than two poses at stamps of the truth.
-Result<AbsoluteError> absolute_error(const Trajectory& estimate, const Trajectory& truth, const Point2& p_robot_lever = Point2::Zero(),
-                                     double longest_gap_s = 0.25);
+Result<AbsoluteError> absolute_error(const Trajectory& estimate, const Trajectory& truth,
+                                     const Point2& p_robot_lever = Point2::Zero(), double longest_gap_s = 0.25);
 
 struct DisplacementError {
-  ErrorSpread length_m;    ///< of | |step| - |true step| |
-  ErrorSpread heading_rad; ///< of the turn, smallest angle
+  ErrorSpread length_m;     ///< of | |step| - |true step| |
+  ErrorSpread heading_rad;  ///< of the turn, smallest angle
   std::size_t steps = 0;
 };
 
-/// The measure of Paper VI: every estimated pose takes the nearest unused true pose within `longest_gap_s`; the lengths of
-/// consecutive steps are compared. Differs: the turn is wrapped by 2 pi; the published program wrapped ((a - b) mod 2) pi
-/// and so reported turns too large by pi.
-Result<DisplacementError> displacement_error(const Trajectory& estimate, const Trajectory& truth, double longest_gap_s = 0.5);
+/// The measure of Paper VI: every estimated pose takes the nearest unused true pose within `longest_gap_s`; the lengths
+/// of consecutive steps are compared. Differs: the turn is wrapped by 2 pi; the published program wrapped ((a - b) mod
+/// 2) pi and so reported turns too large by pi.
+Result<DisplacementError> displacement_error(const Trajectory& estimate, const Trajectory& truth,
+                                             double longest_gap_s = 0.5);
 
 }  // namespace smokemap

@@ -15,7 +15,10 @@ constexpr std::array<std::array<int, 2>, 8> kSteps = {
 class Tracer {
  public:
   Tracer(const cv::Mat& line, const cv::Mat& clearance)
-      : line_(line), clearance_(clearance), node_of_(line.size(), CV_32SC1, cv::Scalar(-1)), used_(line.size(), CV_8UC1, cv::Scalar(0)) {}
+      : line_(line),
+        clearance_(clearance),
+        node_of_(line.size(), CV_32SC1, cv::Scalar(-1)),
+        used_(line.size(), CV_8UC1, cv::Scalar(0)) {}
 
   VoronoiGraph run() {
     find_nodes();
@@ -78,7 +81,8 @@ class Tracer {
   void leave_node(const cv::Point& from) {
     for (const auto& step : kSteps) {
       const cv::Point first = from + cv::Point(step[0], step[1]);
-      if (is_line(first) && node_of_.at<int>(first) < 0 && !used_.at<unsigned char>(first)) follow(node_of_.at<int>(from), first);
+      if (is_line(first) && node_of_.at<int>(first) < 0 && !used_.at<unsigned char>(first))
+        follow(node_of_.at<int>(from), first);
     }
   }
 

@@ -31,12 +31,11 @@ Ring ring_around(const cv::Mat& image, int x, int y) {
   return ring;
 }
 
-/// True if taking the middle away neither parts the line (8 neighbours) nor joins or opens a hole (4 neighbours): the number
-/// of 4-connected background parts of the ring that touch the middle by a side is one (Yokoi's number).
+/// True if taking the middle away neither parts the line (8 neighbours) nor joins or opens a hole (4 neighbours): the
+/// number of 4-connected background parts of the ring that touch the middle by a side is one (Yokoi's number).
 bool is_simple(const Ring& ring) {
   int crossings = 0;
-  for (size_t k = 0; k < 8; k += 2)
-    crossings += !ring.set[k] && (ring.set[(k + 1) % 8] || ring.set[(k + 2) % 8]);
+  for (size_t k = 0; k < 8; k += 2) crossings += !ring.set[k] && (ring.set[(k + 1) % 8] || ring.set[(k + 2) % 8]);
   return crossings == 1;
 }
 
@@ -49,7 +48,8 @@ bool on_ridge(const cv::Mat& clearance, int x, int y) {
   return std::hypot(gx, gy) < kRidgeSlope;
 }
 
-/// Takes simple pixels away by rising clearance; ridge pixels with at most `end_neighbours` neighbours are ends and stay.
+/// Takes simple pixels away by rising clearance; ridge pixels with at most `end_neighbours` neighbours are ends and
+/// stay.
 void thin(const cv::Mat& clearance, int end_neighbours, cv::Mat& line) {
   using Entry = std::tuple<float, int, int>;  // clearance, row, column: smallest first
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
@@ -82,8 +82,8 @@ cv::Mat free_clearance(const cv::Mat& free_space) {
 
 cv::Mat thin_by_clearance(const cv::Mat& clearance, double min_clearance_px) {
   cv::Mat line = clearance >= std::max(min_clearance_px, 1e-6);
-  // The end of a line two pixels wide, as in an even corridor, has two neighbours once its twin is gone: such ends stay until
-  // all lines are one pixel wide.
+  // The end of a line two pixels wide, as in an even corridor, has two neighbours once its twin is gone: such ends stay
+  // until all lines are one pixel wide.
   thin(clearance, 2, line);
   thin(clearance, 1, line);
   return line;

@@ -53,7 +53,8 @@ class Trimmer {
   std::optional<size_t> shortest_twig() const {
     std::vector<int> degree(graph_.nodes.size(), 0);
     for (size_t e = 0; e < graph_.edges.size(); ++e)
-      if (edge_is_there_[e]) ++degree[static_cast<size_t>(graph_.edges[e].from)], ++degree[static_cast<size_t>(graph_.edges[e].to)];
+      if (edge_is_there_[e])
+        ++degree[static_cast<size_t>(graph_.edges[e].from)], ++degree[static_cast<size_t>(graph_.edges[e].to)];
     std::optional<size_t> best;
     double least = trim_ratio_;
     for (size_t e = 0; e < graph_.edges.size(); ++e) {
@@ -71,8 +72,9 @@ class Trimmer {
 
   void cut(size_t e) {
     const VoronoiEdge edge = graph_.edges[e];
-    const bool from_is_tip = edges_at(edge.from).size() == 1 &&
-                             (edges_at(edge.to).size() != 1 || node(edge.from).clearance_px < node(edge.to).clearance_px);
+    const bool from_is_tip =
+        edges_at(edge.from).size() == 1 &&
+        (edges_at(edge.to).size() != 1 || node(edge.from).clearance_px < node(edge.to).clearance_px);
     edge_is_there_[e] = false;
     node_is_there_[static_cast<size_t>(from_is_tip ? edge.from : edge.to)] = false;
     join_if_passing(from_is_tip ? edge.to : edge.from);
@@ -148,14 +150,15 @@ void name_nodes(VoronoiGraph& graph) {
       if (!starts && !ends) continue;
       degree += starts + ends;
       has_ring |= starts && ends;
-      leaving.emplace_back(leaving_angle(graph, static_cast<int>(e), static_cast<int>(n), !starts), static_cast<int>(e));
+      leaving.emplace_back(leaving_angle(graph, static_cast<int>(e), static_cast<int>(n), !starts),
+                           static_cast<int>(e));
     }
     std::sort(leaving.begin(), leaving.end());
     for (const auto& [angle, edge] : leaving) node.edges.push_back(edge);
-    node.kind = degree == 0                ? VoronoiNodeKind::kIsolated
-                : degree == 1              ? VoronoiNodeKind::kDeadEnd
-                : degree == 2 && has_ring  ? VoronoiNodeKind::kLoop
-                                           : VoronoiNodeKind::kJunction;
+    node.kind = degree == 0               ? VoronoiNodeKind::kIsolated
+                : degree == 1             ? VoronoiNodeKind::kDeadEnd
+                : degree == 2 && has_ring ? VoronoiNodeKind::kLoop
+                                          : VoronoiNodeKind::kJunction;
   }
 }
 
@@ -190,11 +193,13 @@ cv::Mat draw_voronoi_graph(const VoronoiGraph& graph, const cv::Mat& free_space)
   for (const VoronoiEdge& edge : graph.edges)
     for (size_t i = 1; i < edge.path_px.size(); ++i) {
       const double share = std::min(1.0, edge.mean_clearance_px / widest);
-      cv::line(canvas, cv_point(edge.path_px[i - 1]), cv_point(edge.path_px[i]), cv::Scalar(200 - 150 * share, 110, 60 + 150 * share), 2, cv::LINE_AA);
+      cv::line(canvas, cv_point(edge.path_px[i - 1]), cv_point(edge.path_px[i]),
+               cv::Scalar(200 - 150 * share, 110, 60 + 150 * share), 2, cv::LINE_AA);
     }
   for (const VoronoiNode& node : graph.nodes) {
     const bool is_end = node.kind == VoronoiNodeKind::kDeadEnd;
-    cv::circle(canvas, cv_point(node.p_px), is_end ? 4 : 5, is_end ? cv::Scalar(70, 70, 220) : cv::Scalar(60, 150, 40), cv::FILLED, cv::LINE_AA);
+    cv::circle(canvas, cv_point(node.p_px), is_end ? 4 : 5, is_end ? cv::Scalar(70, 70, 220) : cv::Scalar(60, 150, 40),
+               cv::FILLED, cv::LINE_AA);
   }
   return canvas;
 }

@@ -9,7 +9,8 @@
 namespace smokemap {
 
 struct VoronoiParams {
-  double trim_ratio = 0.5;        ///< a branch must stick out of its junction's disc by this share of the junction's clearance
+  double trim_ratio =
+      0.5;  ///< a branch must stick out of its junction's disc by this share of the junction's clearance
   double min_clearance_px = 1.0;  ///< nothing narrower is part of the graph
 
   Result<Ok> validate() const;
@@ -26,16 +27,16 @@ struct VoronoiNode {
   Point2 p_px = Point2::Zero();  ///< picture given, y down
   double clearance_px = 0;       ///< distance to the nearest obstacle
   VoronoiNodeKind kind = VoronoiNodeKind::kDeadEnd;
-  std::vector<int> edges;        ///< indices into VoronoiGraph::edges, counter-clockwise as seen (y down: by falling atan2)
+  std::vector<int> edges;  ///< indices into VoronoiGraph::edges, counter-clockwise as seen (y down: by falling atan2)
 };
 
 struct VoronoiEdge {
   int from = 0;  ///< indices into VoronoiGraph::nodes; equal for a ring
   int to = 0;
   double length_px = 0;
-  double min_clearance_px = 0;   ///< of the narrowest place: half the width of the door on the way
+  double min_clearance_px = 0;  ///< of the narrowest place: half the width of the door on the way
   double mean_clearance_px = 0;
-  std::vector<Point2> path_px;   ///< pixel by pixel, from `from` to `to`, ends included
+  std::vector<Point2> path_px;  ///< pixel by pixel, from `from` to `to`, ends included
 };
 
 /// Junctions, dead ends and the ways between them along the middle of free space.
@@ -51,9 +52,9 @@ struct VoronoiGraph {
 ///         kInvalidArgument for another pixel type or parameters out of range.
 /// Cost: O(pixels log pixels). Deterministic.
 /// Source: Mielle et al., "Using sketch-maps for robot navigation: interpretation and matching", SSRR 2016, sect. III;
-/// differs: ridges are thinned in the order of the distance image (homotopic), not by a Laplacian threshold, so the graph
-/// never tears; trimming compares a branch with the clearance of the junction it starts from, not with the strongest
-/// ridge of the picture, so one large hall does not erase small rooms.
+/// differs: ridges are thinned in the order of the distance image (homotopic), not by a Laplacian threshold, so the
+/// graph never tears; trimming compares a branch with the clearance of the junction it starts from, not with the
+/// strongest ridge of the picture, so one large hall does not erase small rooms.
 Result<VoronoiGraph> voronoi_graph(const cv::Mat& free_space, const VoronoiParams& params = {});
 
 /// The graph over a dimmed copy of the free space: edges by clearance, junctions and dead ends marked. CV_8UC3, BGR.

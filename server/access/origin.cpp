@@ -30,9 +30,8 @@ bool OriginPolicy::host_is_ours(std::string_view host, std::string_view local_ad
   };
   // A configured name may carry the port of a proxy in front of us.
   return std::any_of(ours.begin(), ours.end(), is_asked) ||
-         std::any_of(names_.begin(), names_.end(), [&](const std::string& name) {
-           return !name.empty() && (asked == name || is_asked(name));
-         });
+         std::any_of(names_.begin(), names_.end(),
+                     [&](const std::string& name) { return !name.empty() && (asked == name || is_asked(name)); });
 }
 
 bool OriginPolicy::origin_is_ours(std::string_view origin, std::string_view host) {

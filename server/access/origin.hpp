@@ -7,8 +7,8 @@
 
 namespace smokemap::server {
 
-/// Which names the server answers for. Refusing others stops DNS rebinding; refusing foreign origins stops pages of other
-/// sites from using a browser that is paired here.
+/// Which names the server answers for. Refusing others stops DNS rebinding; refusing foreign origins stops pages of
+/// other sites from using a browser that is paired here.
 class OriginPolicy {
  public:
   /// @param names  host names (or host:port) beside the loopback names and the address a connection came in on

@@ -58,7 +58,10 @@ std::string random_pin() {
 }
 
 Access::Access(const PairingParams& params, std::shared_ptr<const Clock> clock, Save save)
-    : params_(params), clock_(std::move(clock)), save_(std::move(save)), pin_(params.pin.empty() ? random_pin() : params.pin) {}
+    : params_(params),
+      clock_(std::move(clock)),
+      save_(std::move(save)),
+      pin_(params.pin.empty() ? random_pin() : params.pin) {}
 
 void Access::restore(const PairedDevice& device) {
   const std::lock_guard lock(mutex_);

@@ -21,10 +21,10 @@ std::string random_hex(int bytes);
 std::string random_pin();
 
 struct PairingParams {
-  int tries = 5;                            ///< wrong PINs before everybody waits
+  int tries = 5;  ///< wrong PINs before everybody waits
   Stamp lock = from_seconds(60);
-  bool loopback_without_pin = false;        ///< the demo
-  std::string pin;                          ///< empty = drawn at the start
+  bool loopback_without_pin = false;  ///< the demo
+  std::string pin;                    ///< empty = drawn at the start
   std::size_t most_devices = 200;
 };
 

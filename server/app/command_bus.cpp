@@ -36,8 +36,8 @@ Result<Ok> for_each_event(Store& store, std::optional<std::int64_t> last, const 
   }
 }
 
-/// A place pointed at on the merged map is kept on the plan where there is one: the robot's frame ends with this run, and a
-/// bottle stored in it would be shown in the wrong room after a restart.
+/// A place pointed at on the merged map is kept on the plan where there is one: the robot's frame ends with this run,
+/// and a bottle stored in it would be shown in the wrong room after a restart.
 CommandMessage kept_on_plan(const EnginePort& engine, CommandMessage message) {
   Json& data = message.data;
   if (message.name != "place_poi" && message.name != "set_goal") return message;

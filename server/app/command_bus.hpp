@@ -32,8 +32,8 @@ class ViewKeeper {
 /// The one way in for what people do: role -> log -> engine -> answer, one after the other on a thread of its own.
 ///
 /// A command is on the disk before the engine gets it and before it is acknowledged. The same id again gets the same
-/// answer and changes nothing. An emergency stop overtakes everything that waits and reaches the engine before the disk:
-/// a full disk must not keep a robot going.
+/// answer and changes nothing. An emergency stop overtakes everything that waits and reaches the engine before the
+/// disk: a full disk must not keep a robot going.
 class CommandBus final : public CommandSink {
  public:
   using ViewListener = std::function<void(const ServerView&)>;
@@ -41,7 +41,8 @@ class CommandBus final : public CommandSink {
     std::size_t most_waiting = 2000;
   };
 
-  CommandBus(Store& store, EnginePort& engine, std::shared_ptr<const Clock> clock, ViewListener listener, Limits limits);
+  CommandBus(Store& store, EnginePort& engine, std::shared_ptr<const Clock> clock, ViewListener listener,
+             Limits limits);
   ~CommandBus() override;
   CommandBus(const CommandBus&) = delete;
   CommandBus& operator=(const CommandBus&) = delete;
@@ -79,8 +80,8 @@ class CommandBus final : public CommandSink {
   std::thread thread_;
 };
 
-/// Applies events 1..`last` of the log to an engine (all of them without `last`). Refused ones, and those of another version
-/// that cannot be read, are passed over. Used at the start and for looking back.
+/// Applies events 1..`last` of the log to an engine (all of them without `last`). Refused ones, and those of another
+/// version that cannot be read, are passed over. Used at the start and for looking back.
 Result<ViewKeeper> replay_log(Store& store, EnginePort& engine, Origin origin, std::optional<std::int64_t> last = {});
 
 }  // namespace smokemap::server

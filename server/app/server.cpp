@@ -38,7 +38,8 @@ class Gate {
   EnginePort::Listener inner_;
 };
 
-/// Waits for what the engine makes of the commands: snapshots newer than they are and, when there is a drawing, its regions.
+/// Waits for what the engine makes of the commands: snapshots newer than they are and, when there is a drawing, its
+/// regions.
 std::shared_ptr<const Snapshot> settled(EnginePort& engine) {
   const auto deadline = std::chrono::steady_clock::now() + kReplayDeadline;
   const std::uint64_t before = engine.snapshot()->revision;
@@ -89,12 +90,10 @@ struct Server::Impl {
 
   Result<Ok> start_engine_side() {
     hub = std::make_unique<Hub>(options.live, epoch, clock);
-    bus = std::make_unique<CommandBus>(*store, engine, clock, [this](const ServerView& view) { hub->show(view); },
-                                       CommandBus::Limits{});
+    bus = std::make_unique<CommandBus>(
+        *store, engine, clock, [this](const ServerView& view) { hub->show(view); }, CommandBus::Limits{});
     if (auto replayed = bus->replay(); !replayed) return replayed;
-    gate = std::make_shared<Gate>([this](std::shared_ptr<const Snapshot> snapshot) {
-      hub->show(std::move(snapshot));
-    });
+    gate = std::make_shared<Gate>([this](std::shared_ptr<const Snapshot> snapshot) { hub->show(std::move(snapshot)); });
     engine.on_snapshot([gate = gate](std::shared_ptr<const Snapshot> snapshot) { (*gate)(std::move(snapshot)); });
     if (auto now = engine.snapshot()) hub->show(std::move(now));
     bus->start();
@@ -109,7 +108,8 @@ struct Server::Impl {
     if (options.make_replay_engine) parts.snapshot_at = [this](std::int64_t at) { return look_back(at); };
     add_api(*service, parts);
     sockets = std::make_unique<WsServer>(options.session, *access, *hub, *bus, clock);
-    network = std::make_unique<NetServer>(NetOptions{options.address, options.port, options.network_threads, 256}, *service, *sockets);
+    network = std::make_unique<NetServer>(NetOptions{options.address, options.port, options.network_threads, 256},
+                                          *service, *sockets);
     const auto bound = network->start();
     if (!bound) return bound.error();
     port = *bound;
@@ -180,9 +180,11 @@ Result<Json> Server::post(const std::string& path, std::string body) {
   request.who = Identity{"server", "server", Role::kCommander};
   request.body = std::move(body);
   const Admission admission = impl_->service->admit(request);
-  if (admission.refusal) return fail(Errc::kForbidden, admission.refusal->body ? *admission.refusal->body : path + " was refused");
+  if (admission.refusal)
+    return fail(Errc::kForbidden, admission.refusal->body ? *admission.refusal->body : path + " was refused");
   auto answered = std::make_shared<std::promise<Response>>();
-  impl_->service->handle(admission, std::move(request), [answered](Response response) { answered->set_value(std::move(response)); });
+  impl_->service->handle(admission, std::move(request),
+                         [answered](Response response) { answered->set_value(std::move(response)); });
   const Response response = answered->get_future().get();
   const std::string text = response.body ? *response.body : std::string("{}");
   if (response.status >= 400) return fail(Errc::kInvalidArgument, text);

@@ -17,7 +17,7 @@ namespace smokemap::server {
 
 struct ServerOptions {
   std::string data_dir = "data";
-  std::string web_root;                 ///< folder with index.html; empty = only /api
+  std::string web_root;  ///< folder with index.html; empty = only /api
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;               ///< 0 = any free one
   std::vector<std::string> host_names;  ///< names it answers for beside its address; loopback names on loopback
@@ -44,8 +44,8 @@ class Server {
   Result<Ok> start();
   void stop();
 
-  /// A POST below /api as the machine itself, with a commander's rights: how the demo sets itself up, by the same way as
-  /// everybody else. After `start`; waits for the answer.
+  /// A POST below /api as the machine itself, with a commander's rights: how the demo sets itself up, by the same way
+  /// as everybody else. After `start`; waits for the answer.
   Result<Json> post(const std::string& path, std::string body);
 
   std::uint16_t port() const;

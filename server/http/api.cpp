@@ -107,7 +107,8 @@ void submit_command(CommandSink& sink, const Request& request, const Respond& re
 
 Response exported(const ApiParts& parts, const Request& request) {
   const std::string& file = request.path_parameters.find("file")->second;
-  Response response = file == "events.jsonl" ? events_as_lines(parts.store) : export_file(file, *parts.engine.snapshot());
+  Response response =
+      file == "events.jsonl" ? events_as_lines(parts.store) : export_file(file, *parts.engine.snapshot());
   if (response.status == 200)
     response.headers.emplace_back("Content-Disposition", "attachment; filename=\"" + file + "\"");
   return response;

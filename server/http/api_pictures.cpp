@@ -21,14 +21,15 @@ std::string query_text(const Request& request, std::string_view name) {
 Response upload_plan(const ApiParts& p, const Request& request) {
   int page = 1;
   const std::string asked = query_text(request, "page");
-  if (!asked.empty() && (std::from_chars(asked.data(), asked.data() + asked.size(), page).ec != std::errc() || page < 1))
+  if (!asked.empty() &&
+      (std::from_chars(asked.data(), asked.data() + asked.size(), page).ec != std::errc() || page < 1))
     return error_response(400, "invalid_argument", "page must be a number from 1");
   const auto picture = p.pictures.clean(request.body, page);
   if (!picture) return error_response(picture.error());
   const auto sha = p.files.put(picture->bytes);
   if (!sha) return error_response(sha.error());
-  const auto kept = p.store.add_picture({*sha, "picture", *sha, picture->media_type, picture->width_px, picture->height_px,
-                                         p.clock->now() / 1'000'000});
+  const auto kept = p.store.add_picture(
+      {*sha, "picture", *sha, picture->media_type, picture->width_px, picture->height_px, p.clock->now() / 1'000'000});
   if (!kept) return error_response(kept.error());
   return json_response({{"plan_id", *sha},
                         {"width", picture->width_px},
@@ -92,7 +93,8 @@ Response read_sketch(const ApiParts& p, const Request& request) {
   constexpr const char* kKinds[] = {"wall", "door", "note"};
   Json strokes = Json::array();
   for (const Stroke& stroke : reading->strokes)
-    strokes.push_back({{"points", points_json(stroke.points_px, 0.01)}, {"kind", kKinds[static_cast<std::size_t>(stroke.kind)]}});
+    strokes.push_back(
+        {{"points", points_json(stroke.points_px, 0.01)}, {"kind", kKinds[static_cast<std::size_t>(stroke.kind)]}});
   return json_response({{"width", reading->width_px}, {"height", reading->height_px}, {"strokes", std::move(strokes)}});
 }
 
@@ -107,7 +109,8 @@ Handler with(const ApiParts& parts, Answer answer) {
 void add_picture_api(HttpService& service, const ApiParts& parts) {
   service.add({Method::kPost, "/api/plans", Role::kCommander, kMostPictureBytes, true, with(parts, upload_plan)});
   service.add({Method::kPost, "/api/plans/{id}/read", Role::kCommander, kMostReadBody, true, with(parts, read_plan)});
-  service.add({Method::kPost, "/api/sketch-photo", Role::kFirefighter, kMostPictureBytes, true, with(parts, read_sketch)});
+  service.add(
+      {Method::kPost, "/api/sketch-photo", Role::kFirefighter, kMostPictureBytes, true, with(parts, read_sketch)});
   service.add({Method::kGet, "/api/plans/{id}/picture", Role::kObserver, 0, true,
                with(parts, [](const ApiParts& p, const Request& r) { return stored_picture(p, r, "picture"); })});
   service.add({Method::kGet, "/api/plans/{id}/rectified", Role::kObserver, 0, true,

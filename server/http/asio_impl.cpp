@@ -1,16 +1,15 @@
 // The threads and the listening socket; also the one place where Asio's and Beast's separately compiled parts live.
 
-#include <boost/asio/impl/src.hpp>
-#include <boost/beast/src.hpp>
-
 #include <atomic>
 #include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/impl/src.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
+#include <boost/beast/src.hpp>
 #include <chrono>
 #include <thread>
 #include <vector>
@@ -28,7 +27,11 @@ using boost::system::error_code;
 /// Handlers hold a plain pointer: the threads are joined before it goes, and what still waits goes with `io`.
 struct NetServer::Impl {
   Impl(const NetOptions& options_, HttpService& service_, UpgradeHandler& sockets_)
-      : options(options_), service(service_), sockets(sockets_), acceptor(asio::make_strand(io)), pause(acceptor.get_executor()) {}
+      : options(options_),
+        service(service_),
+        sockets(sockets_),
+        acceptor(asio::make_strand(io)),
+        pause(acceptor.get_executor()) {}
 
   Result<std::uint16_t> listen() {
     error_code failed;
@@ -40,7 +43,8 @@ struct NetServer::Impl {
     if (!failed) acceptor.bind(endpoint, failed);
     if (!failed) acceptor.listen(asio::socket_base::max_listen_connections, failed);
     if (failed)
-      return fail(Errc::kIo, "cannot listen on " + options.address + ":" + std::to_string(options.port) + ": " + failed.message());
+      return fail(Errc::kIo,
+                  "cannot listen on " + options.address + ":" + std::to_string(options.port) + ": " + failed.message());
     return acceptor.local_endpoint().port();
   }
 
@@ -89,7 +93,8 @@ Result<std::uint16_t> NetServer::start() {
   const auto port = impl_->listen();
   if (!port) return port;
   impl_->accept();
-  for (int i = 0; i < impl_->options.threads; ++i) impl_->threads.emplace_back([impl = impl_.get()] { impl->io.run(); });
+  for (int i = 0; i < impl_->options.threads; ++i)
+    impl_->threads.emplace_back([impl = impl_.get()] { impl->io.run(); });
   return port;
 }
 

@@ -30,15 +30,15 @@ std::string yaml_of(const OccupancyGrid& grid) {
 std::string geojson_of(const Snapshot& snapshot) {
   Json features = Json::array();
   for (const MergedWall& wall : snapshot.merged->walls)
-    features.push_back({{"type", "Feature"},
-                        {"geometry",
-                         {{"type", "LineString"},
-                          {"coordinates", {point_json(wall.segment_map.a), point_json(wall.segment_map.b)}}}},
-                        {"properties",
-                         {{"state", to_string(wall.state)},
-                          {"confidence", rounded(wall.confidence, 0.001)},
-                          {"moved_m", rounded_m(wall.displacement_m)},
-                          {"layout_wall", wall.layout_wall ? Json(*wall.layout_wall) : Json(nullptr)}}}});
+    features.push_back(
+        {{"type", "Feature"},
+         {"geometry",
+          {{"type", "LineString"}, {"coordinates", {point_json(wall.segment_map.a), point_json(wall.segment_map.b)}}}},
+         {"properties",
+          {{"state", to_string(wall.state)},
+           {"confidence", rounded(wall.confidence, 0.001)},
+           {"moved_m", rounded_m(wall.displacement_m)},
+           {"layout_wall", wall.layout_wall ? Json(*wall.layout_wall) : Json(nullptr)}}}});
   return to_text({{"type", "FeatureCollection"},
                   {"note", "coordinates are metres in the merged map, not longitude and latitude"},
                   {"features", std::move(features)}});

@@ -1,5 +1,5 @@
-// One HTTP/1.1 connection: head, admission, body, answer, and again. Everything runs on the connection's strand; answers of
-// workers are posted back to it. Every wait has a deadline.
+// One HTTP/1.1 connection: head, admission, body, answer, and again. Everything runs on the connection's strand;
+// answers of workers are posted back to it. Every wait has a deadline.
 
 #include "server/http/http_session.hpp"
 
@@ -51,15 +51,15 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     parser_->header_limit(kMostHeadBytes);
     parser_->body_limit(boost::none);  // by route, once the head is known
     stream_.expires_after(kHeadDeadline);
-    http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code failed, std::size_t) {
-      self->on_head(failed);
-    });
+    http::async_read_header(stream_, buffer_, *parser_,
+                            [self = shared_from_this()](error_code failed, std::size_t) { self->on_head(failed); });
   }
 
   void on_head(error_code failed) {
     if (failed == http::error::header_limit)
       return refuse(error_response(431, "too_large", "the head of the request is too large"));
-    if (failed == http::error::end_of_stream || failed == beast::error::timeout || is_socket_error(failed)) return close();
+    if (failed == http::error::end_of_stream || failed == beast::error::timeout || is_socket_error(failed))
+      return close();
     if (failed) return refuse(error_response(400, "corrupt", "this is not an HTTP request"));
     const auto& head = parser_->get();
     keep_alive_ = head.keep_alive();
@@ -91,9 +91,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   void read_body() {
-    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code failed, std::size_t) {
-      self->on_body(failed);
-    });
+    http::async_read(stream_, buffer_, *parser_,
+                     [self = shared_from_this()](error_code failed, std::size_t) { self->on_body(failed); });
   }
 
   void on_body(error_code failed) {
@@ -103,7 +102,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     request_.body = std::move(parser_->get().body());
     stream_.expires_never();  // a worker may take its time; it is the handler's to be bounded
     service_.handle(admission_, std::move(request_), [self = shared_from_this()](Response response) {
-      asio::post(self->stream_.get_executor(), [self, answer = std::move(response)]() mutable { self->write(std::move(answer)); });
+      asio::post(self->stream_.get_executor(),
+                 [self, answer = std::move(response)]() mutable { self->write(std::move(answer)); });
     });
   }
 
@@ -145,9 +145,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void drain(std::size_t so_far) {
     if (so_far > kMostDrainedBytes) return close();
     buffer_.clear();
-    stream_.async_read_some(buffer_.prepare(16 * 1024), [self = shared_from_this(), so_far](error_code failed, std::size_t n) {
-      if (!failed) self->drain(so_far + n);
-    });
+    stream_.async_read_some(buffer_.prepare(16 * 1024),
+                            [self = shared_from_this(), so_far](error_code failed, std::size_t n) {
+                              if (!failed) self->drain(so_far + n);
+                            });
   }
 
   void upgrade(const Request& request) {

@@ -6,16 +6,24 @@ namespace {
 int status_of(Errc code) {
   switch (code) {
     case Errc::kInvalidArgument:
-    case Errc::kCorrupt: return 400;
+    case Errc::kCorrupt:
+      return 400;
     case Errc::kDegenerate:
-    case Errc::kNotConverged: return 422;
-    case Errc::kUnsupported: return 415;
-    case Errc::kTooLarge: return 413;
-    case Errc::kNotFound: return 404;
+    case Errc::kNotConverged:
+      return 422;
+    case Errc::kUnsupported:
+      return 415;
+    case Errc::kTooLarge:
+      return 413;
+    case Errc::kNotFound:
+      return 404;
     case Errc::kConflict:
-    case Errc::kCancelled: return 409;
-    case Errc::kForbidden: return 403;
-    case Errc::kIo: return 507;
+    case Errc::kCancelled:
+      return 409;
+    case Errc::kForbidden:
+      return 403;
+    case Errc::kIo:
+      return 507;
   }
   return 500;
 }

@@ -21,7 +21,7 @@ class UpgradeHandler {
 
 struct NetOptions {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 0;      ///< 0 = any free one
+  std::uint16_t port = 0;  ///< 0 = any free one
   int threads = 1;
   int most_connections = 256;  ///< plain and upgraded; more are closed at once
 };

@@ -22,8 +22,9 @@ struct CleanPicture {
 };
 
 struct PlanReadRequest {
-  std::optional<std::array<Point2, 4>> corners_px;  ///< of the sheet in the picture: top left, top right, bottom right, bottom left
-  std::optional<double> metres_per_pixel;           ///< of the rectified picture
+  std::optional<std::array<Point2, 4>>
+      corners_px;  ///< of the sheet in the picture: top left, top right, bottom right, bottom left
+  std::optional<double> metres_per_pixel;  ///< of the rectified picture
 };
 struct PlanReading {
   LayoutMap layout;  ///< in pixels of `rectified`

@@ -47,7 +47,8 @@ void HttpService::add(Route route) { routes_.push_back(std::move(route)); }
 
 std::optional<Response> HttpService::refuse_foreign(const Request& request) const {
   if (!origins_.host_is_ours(request.host, request.local_address, request.local_port))
-    return error_response(421, "forbidden", "this server does not answer for the host '" + request.host.substr(0, 80) + "'");
+    return error_response(421, "forbidden",
+                          "this server does not answer for the host '" + request.host.substr(0, 80) + "'");
   if (!OriginPolicy::origin_is_ours(request.origin, request.host))
     return error_response(403, "forbidden", "pages of another origin may not ask here");
   return std::nullopt;
@@ -75,7 +76,8 @@ Admission HttpService::admit(Request& request) const {
   }
   Admission admission;
   if (!route) {
-    if (path_known || method != Method::kGet) return refused(error_response(405, "invalid_argument", "not with this method"));
+    if (path_known || method != Method::kGet)
+      return refused(error_response(405, "invalid_argument", "not with this method"));
     if (request.path.starts_with("/api/")) return refused(error_response(404, "not_found", "there is no such request"));
     return admission;
   }
@@ -84,7 +86,8 @@ Admission HttpService::admit(Request& request) const {
       request.who = access_.identify(std::string_view(request.authorization).substr(kBearer.size()));
     if (!request.who) return refused(error_response(401, "unauthorized", "pair this device first"));
     if (request.who->role < *route->least)
-      return refused(error_response(403, "forbidden", std::string("the role ") + to_string(request.who->role) + " may not do this"));
+      return refused(error_response(403, "forbidden",
+                                    std::string("the role ") + to_string(request.who->role) + " may not do this"));
   }
   admission.route = route;
   admission.most_body_bytes = route->most_body_bytes;
@@ -99,7 +102,8 @@ Admission HttpService::admit(Request& request) const {
 
 void HttpService::handle(const Admission& admission, Request request, Respond respond) const {
   if (!admission.route) return respond(files_.get(request));
-  const auto run = [handler = &admission.route->handler, permit = admission.permit](const Request& r, const Respond& answer) {
+  const auto run = [handler = &admission.route->handler, permit = admission.permit](const Request& r,
+                                                                                    const Respond& answer) {
     try {
       (*handler)(r, answer);
     } catch (const std::exception&) {

@@ -18,19 +18,19 @@ using Handler = std::function<void(const Request&, Respond)>;
 
 struct Route {
   Method method = Method::kGet;
-  std::string pattern;            ///< "/api/plans/{id}/picture"
-  std::optional<Role> least;      ///< none: no token is asked for
+  std::string pattern;        ///< "/api/plans/{id}/picture"
+  std::optional<Role> least;  ///< none: no token is asked for
   std::size_t most_body_bytes = 0;
-  bool on_worker = false;         ///< takes long: not on the network's thread
+  bool on_worker = false;  ///< takes long: not on the network's thread
   Handler handler;
 };
 
 /// What may be done with a request of which only the head is known.
 struct Admission {
-  std::optional<Response> refusal;      ///< then the body is not read
-  const Route* route = nullptr;         ///< null: a static file
+  std::optional<Response> refusal;  ///< then the body is not read
+  const Route* route = nullptr;     ///< null: a static file
   std::size_t most_body_bytes = 0;
-  std::shared_ptr<void> permit;         ///< held while a large body is in memory
+  std::shared_ptr<void> permit;  ///< held while a large body is in memory
 };
 
 /// Everything between the socket and the handlers: Host and Origin, routes, roles, limits, worker threads.

@@ -86,7 +86,10 @@ std::optional<StaticFiles::Entry> StaticFiles::load(const std::string& file) {
   if (const auto it = cache_.find(file); it != cache_.end() && it->second.stamp == stamp) return it->second;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return std::nullopt;
-  Entry entry{stamp, std::make_shared<const std::string>(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()), nullptr};
+  Entry entry{
+      stamp,
+      std::make_shared<const std::string>(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()),
+      nullptr};
   if (worth_gzipping(media_type_of(file))) entry.gzipped = gzipped_or_null(*entry.plain);
   return cache_[file] = std::move(entry);
 }

@@ -8,8 +8,8 @@
 
 namespace smokemap::server {
 
-/// The built web app. Paths outside the folder do not exist; paths without a dot that are no file give index.html, so that
-/// the app may have addresses of its own. Texts are gzipped once and kept. Thread-safe.
+/// The built web app. Paths outside the folder do not exist; paths without a dot that are no file give index.html, so
+/// that the app may have addresses of its own. Texts are gzipped once and kept. Thread-safe.
 class StaticFiles {
  public:
   explicit StaticFiles(std::string root);

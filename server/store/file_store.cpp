@@ -95,7 +95,8 @@ Result<std::string> FileStore::get(std::string_view sha256) const {
   std::ifstream file(folder_ + "/" + std::string(sha256), std::ios::binary);
   if (!file) return fail(Errc::kNotFound, "no file has the hash " + std::string(sha256));
   std::string bytes(std::istreambuf_iterator<char>(file), {});
-  if (sha256_hex(bytes) != sha256) return fail(Errc::kCorrupt, "the stored file " + std::string(sha256) + " is damaged");
+  if (sha256_hex(bytes) != sha256)
+    return fail(Errc::kCorrupt, "the stored file " + std::string(sha256) + " is damaged");
   return bytes;
 }
 

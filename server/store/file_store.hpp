@@ -11,8 +11,8 @@ namespace smokemap::server {
 std::string sha256_hex(std::string_view bytes);
 bool is_sha256_hex(std::string_view text);
 
-/// Files by the hash of their content, DATA/files/<sha256>. A file is there whole or not at all: it is written beside, synced
-/// and renamed. Names never come from outside. Thread-safe.
+/// Files by the hash of their content, DATA/files/<sha256>. A file is there whole or not at all: it is written beside,
+/// synced and renamed. Names never come from outside. Thread-safe.
 class FileStore {
  public:
   static Result<FileStore> open(const std::string& folder);

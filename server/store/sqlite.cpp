@@ -10,17 +10,22 @@ Error error_of(sqlite3* database, int status) {
   const char* file = database ? sqlite3_db_filename(database, "main") : nullptr;
   const std::string where = file && *file ? file : "the database";
   switch (status & 0xff) {
-    case SQLITE_FULL: return fail(Errc::kIo, where + ": the disk is full");
+    case SQLITE_FULL:
+      return fail(Errc::kIo, where + ": the disk is full");
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
       return fail(Errc::kCorrupt, where + " is damaged; move it away or put a copy in its place");
     case SQLITE_BUSY:
-    case SQLITE_LOCKED: return fail(Errc::kConflict, where + " is in use by another process");
-    case SQLITE_CONSTRAINT: return fail(Errc::kConflict, where + ": " + sqlite3_errmsg(database));
+    case SQLITE_LOCKED:
+      return fail(Errc::kConflict, where + " is in use by another process");
+    case SQLITE_CONSTRAINT:
+      return fail(Errc::kConflict, where + ": " + sqlite3_errmsg(database));
     case SQLITE_READONLY:
     case SQLITE_CANTOPEN:
-    case SQLITE_PERM: return fail(Errc::kIo, where + " cannot be opened for writing");
-    default: return fail(Errc::kIo, where + ": " + (database ? sqlite3_errmsg(database) : sqlite3_errstr(status)));
+    case SQLITE_PERM:
+      return fail(Errc::kIo, where + " cannot be opened for writing");
+    default:
+      return fail(Errc::kIo, where + ": " + (database ? sqlite3_errmsg(database) : sqlite3_errstr(status)));
   }
 }
 
@@ -36,8 +41,8 @@ Statement& Statement::bind(std::int64_t value) {
 
 Statement& Statement::bind(std::string_view text) {
   const char* data = text.data() ? text.data() : "";  // a null pointer would be NULL, which equals nothing
-  if (statement_ && sqlite3_bind_text(statement_.get(), ++bound_, data, static_cast<int>(text.size()),
-                                      SQLITE_TRANSIENT) != SQLITE_OK)
+  if (statement_ &&
+      sqlite3_bind_text(statement_.get(), ++bound_, data, static_cast<int>(text.size()), SQLITE_TRANSIENT) != SQLITE_OK)
     error_ = fail(Errc::kTooLarge, "a text of " + std::to_string(text.size()) + " bytes does not fit the database");
   return *this;
 }
@@ -60,8 +65,9 @@ std::string Statement::text(int column) const {
 
 Result<Database> Database::open(const std::string& path, const std::string& vfs) {
   sqlite3* raw = nullptr;
-  const int status = sqlite3_open_v2(path.c_str(), &raw, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX,
-                                     vfs.empty() ? nullptr : vfs.c_str());
+  const int status =
+      sqlite3_open_v2(path.c_str(), &raw, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX,
+                      vfs.empty() ? nullptr : vfs.c_str());
   Database database(raw);
   if (status != SQLITE_OK) return error_of(raw, status);
   sqlite3_extended_result_codes(raw, 1);

@@ -35,8 +35,8 @@ class Statement {
   int bound_ = 0;
 };
 
-/// One SQLite connection, confined to one thread at a time. Every failure is a Result: kIo with "the disk is full" or the
-/// like, kCorrupt for a file that is damaged or is no database.
+/// One SQLite connection, confined to one thread at a time. Every failure is a Result: kIo with "the disk is full" or
+/// the like, kCorrupt for a file that is damaged or is no database.
 class Database {
  public:
   /// @param vfs  name of a registered sqlite3_vfs, for tests; empty = the system's

@@ -62,12 +62,14 @@ Result<std::unique_ptr<Store>> Store::open(const std::string& folder, const std:
 Result<Ok> Store::prepare_schema() {
   // One process owns a log: a second server on the same folder would hand out the same epochs and mix two missions.
   if (auto ran = database_.run("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
-                               "PRAGMA trusted_schema = OFF;"); !ran)
+                               "PRAGMA trusted_schema = OFF;");
+      !ran)
     return ran;
   const auto version = number(database_.prepare("PRAGMA user_version"));
   if (!version) return version.error();
   if (*version > kSchemaVersion)
-    return fail(Errc::kUnsupported, "the log was written by a newer Smokemap (version " + std::to_string(*version) + ")");
+    return fail(Errc::kUnsupported,
+                "the log was written by a newer Smokemap (version " + std::to_string(*version) + ")");
   if (*version == 0) {
     if (auto ran = database_.run("BEGIN IMMEDIATE"); !ran) return ran;
     if (auto ran = database_.run(kSchema); !ran) return ran;
@@ -77,7 +79,8 @@ Result<Ok> Store::prepare_schema() {
   const auto row = check.step();
   if (!row) return row.error();
   if (*row && check.text(0) != "ok")
-    return fail(Errc::kCorrupt, "the log smokemap.db is damaged (" + check.text(0) + "); move it away or put a copy in its place");
+    return fail(Errc::kCorrupt,
+                "the log smokemap.db is damaged (" + check.text(0) + "); move it away or put a copy in its place");
   return Ok{};
 }
 
@@ -96,7 +99,8 @@ Result<std::int64_t> Store::append(const Event& event) {
 Result<Ok> Store::set_outcome(std::int64_t seq, std::string_view outcome) {
   const std::lock_guard lock(mutex_);
   if (auto ran = database_.run("PRAGMA synchronous = NORMAL"); !ran) return ran;
-  auto updated = finish(std::move(database_.prepare("UPDATE events SET outcome = ? WHERE seq = ?").bind(outcome).bind(seq)));
+  auto updated =
+      finish(std::move(database_.prepare("UPDATE events SET outcome = ? WHERE seq = ?").bind(outcome).bind(seq)));
   const auto restored = database_.run("PRAGMA synchronous = FULL");
   return updated.ok() ? restored : updated;
 }
@@ -170,7 +174,8 @@ Result<std::uint32_t> Store::next_epoch(std::int64_t now_s) {
   const auto last = number(database_.prepare("SELECT value FROM meta WHERE key = 'epoch'"));
   if (!last) return last.error();
   const std::int64_t next = std::max(now_s, *last + 1);
-  if (auto saved = finish(std::move(database_.prepare("INSERT OR REPLACE INTO meta VALUES('epoch', ?)").bind(next))); !saved)
+  if (auto saved = finish(std::move(database_.prepare("INSERT OR REPLACE INTO meta VALUES('epoch', ?)").bind(next)));
+      !saved)
     return saved.error();
   return static_cast<std::uint32_t>(next);
 }

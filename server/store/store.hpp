@@ -42,14 +42,15 @@ struct PictureRecord {
   std::int64_t created_ms = 0;
 };
 
-/// The append-only log and the tables beside it, in DATA/smokemap.db. SQLite in WAL mode; an append has reached the disk
-/// (synchronous FULL) when it returns. Thread-safe. A log written by a newer program is kUnsupported.
+/// The append-only log and the tables beside it, in DATA/smokemap.db. SQLite in WAL mode; an append has reached the
+/// disk (synchronous FULL) when it returns. Thread-safe. A log written by a newer program is kUnsupported.
 class Store {
  public:
   /// Creates the folder and the file when missing; checks an existing file (quick_check). @param vfs see Database::open
   static Result<std::unique_ptr<Store>> open(const std::string& folder, const std::string& vfs = {});
 
-  /// Appends with outcome "stored"; returns seq. kConflict when the command_id is there already: look with `find` first.
+  /// Appends with outcome "stored"; returns seq. kConflict when the command_id is there already: look with `find`
+  /// first.
   Result<std::int64_t> append(const Event& event);
   /// Not synced by itself: after a crash the outcome may read "stored" again, and replay decides anew.
   Result<Ok> set_outcome(std::int64_t seq, std::string_view outcome);

@@ -56,8 +56,8 @@ Result<Command> remove_anchor(const Json& data, const Authorship&) {
 }
 Result<Command> judge_wall(const Json& data, const Authorship&) {
   Fields f(data, "judge_wall");
-  return finish(f, JudgeWall{f.integer("wall", 0, kMostWalls),
-                             static_cast<WallVerdict>(f.word("verdict", kWallVerdicts))});
+  return finish(
+      f, JudgeWall{f.integer("wall", 0, kMostWalls), static_cast<WallVerdict>(f.word("verdict", kWallVerdicts))});
 }
 Result<Command> add_stroke(const Json& data, const Authorship& by) {
   Fields f(data, "add_stroke");
@@ -82,7 +82,8 @@ Result<Command> set_sketch_sheet(const Json& data, const Authorship&) {
 }
 Result<Command> judge_pair(const Json& data, const Authorship&) {
   Fields f(data, "judge_pair");
-  return finish(f, JudgePair{f.point("sketch_px"), f.point("plan_px"), static_cast<Verdict>(f.word("verdict", kVerdicts))});
+  return finish(
+      f, JudgePair{f.point("sketch_px"), f.point("plan_px"), static_cast<Verdict>(f.word("verdict", kVerdicts))});
 }
 Result<Command> place_poi(const Json& data, const Authorship& by) {
   Fields f(data, "place_poi");

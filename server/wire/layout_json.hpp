@@ -11,7 +11,8 @@ namespace smokemap::server {
 /// How the rectified sheet lies in the picture as taken.
 struct SheetInPicture {
   SheetHomography homography;
-  std::array<Point2, 4> corners{Point2::Zero(), Point2::Zero(), Point2::Zero(), Point2::Zero()};  ///< of the picture, px
+  std::array<Point2, 4> corners{Point2::Zero(), Point2::Zero(), Point2::Zero(),
+                                Point2::Zero()};  ///< of the picture, px
 };
 
 /// The layout document as part of other JSON; recording/layout_json.hpp says what it holds and what is refused.

@@ -10,24 +10,30 @@ namespace {
 enum Group : std::size_t { kTiles, kRobots, kVectors };
 
 const std::vector<Part> kRobotParts{Part::kRobots};
-const std::vector<Part> kVectorParts{
-    Part::kInfo,          Part::kLayoutWalls, Part::kWalls,       Part::kLinks, Part::kPois,  Part::kGoals,  Part::kStrokes,
-    Part::kSketchRegions, Part::kSketchGaps,  Part::kPlanRegions, Part::kPairs, Part::kMatch, Part::kPeople, Part::kAlerts,
-    Part::kAnchors};
+const std::vector<Part> kVectorParts{Part::kInfo,       Part::kLayoutWalls, Part::kWalls,   Part::kLinks,
+                                     Part::kPois,       Part::kGoals,       Part::kStrokes, Part::kSketchRegions,
+                                     Part::kSketchGaps, Part::kPlanRegions, Part::kPairs,   Part::kMatch,
+                                     Part::kPeople,     Part::kAlerts,      Part::kAnchors};
 
 /// Parts of a snapshot are shared while they do not change: what a part is made of, by address. Empty: always look.
 std::vector<const void*> made_of(Part part, const Snapshot& s) {
   switch (part) {
-    case Part::kLayoutWalls: return {s.layout.get()};
+    case Part::kLayoutWalls:
+      return {s.layout.get()};
     case Part::kWalls:
-    case Part::kLinks: return {s.merged.get()};
+    case Part::kLinks:
+      return {s.merged.get()};
     case Part::kStrokes:
-    case Part::kSketchGaps: return {s.sketch.get()};
-    case Part::kSketchRegions: return {s.sketch.get(), s.match.get()};
+    case Part::kSketchGaps:
+      return {s.sketch.get()};
+    case Part::kSketchRegions:
+      return {s.sketch.get(), s.match.get()};
     case Part::kPlanRegions:
     case Part::kPairs:
-    case Part::kMatch: return {s.match.get()};
-    default: return {};
+    case Part::kMatch:
+      return {s.match.get()};
+    default:
+      return {};
   }
 }
 
@@ -91,7 +97,8 @@ bool LiveEncoder::update_parts(const std::vector<Part>& parts, const Input& inpu
       const auto sources = made_of(part, *input.snapshot);
       if (!sources.empty() && sources == made_of(part, *shown_)) continue;
     }
-    const PartTable table = part == Part::kPeople ? people_table(input.people) : part_table(part, *input.snapshot, input.view);
+    const PartTable table =
+        part == Part::kPeople ? people_table(input.people) : part_table(part, *input.snapshot, input.view);
     auto state = advance(*view.state, table);
     if (!state) continue;
     view.latest_from = view.state->revision;

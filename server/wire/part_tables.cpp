@@ -52,19 +52,19 @@ Json floor_json(const Snapshot& s, const ServerView& view) {
   const double right = frame.origin.x() + frame.width_cells * frame.resolution_m;
   const double top = frame.origin.y() + frame.height_cells * frame.resolution_m;
   const bool empty = !s.sensed || s.sensed->empty();
-  Json floor = {
-      {"plan_id", s.layout ? text_or_null(s.layout->plan_id) : Json(nullptr)},
-      {"picture", s.layout ? text_or_null(view.plan_picture) : Json(nullptr)},
-      {"size", layout ? Json{layout->width_px, layout->height_px} : Json(nullptr)},
-      {"metres_per_pixel", layout && layout->scale ? Json(layout->scale->metres_per_pixel) : Json(nullptr)},
-      {"fit",
-       {{"score", s.merged ? rounded(s.merged->fit.score, 0.001) : 0},
-        {"verdict", s.merged ? s.merged->fit.verdict : "unknown"}}},
-      {"revision", s.merged ? s.merged->revision : 0},
-      {"grid_bounds", empty ? Json(nullptr)
-                            : Json{rounded_m(frame.origin.x()), rounded_m(frame.origin.y()), rounded_m(right), rounded_m(top)}},
-      {"exploring", std::any_of(s.robots.begin(), s.robots.end(), [](const auto& r) { return r.exploring; })},
-      {"stopped", std::any_of(s.robots.begin(), s.robots.end(), [](const auto& r) { return r.stopped; })}};
+  Json floor = {{"plan_id", s.layout ? text_or_null(s.layout->plan_id) : Json(nullptr)},
+                {"picture", s.layout ? text_or_null(view.plan_picture) : Json(nullptr)},
+                {"size", layout ? Json{layout->width_px, layout->height_px} : Json(nullptr)},
+                {"metres_per_pixel", layout && layout->scale ? Json(layout->scale->metres_per_pixel) : Json(nullptr)},
+                {"fit",
+                 {{"score", s.merged ? rounded(s.merged->fit.score, 0.001) : 0},
+                  {"verdict", s.merged ? s.merged->fit.verdict : "unknown"}}},
+                {"revision", s.merged ? s.merged->revision : 0},
+                {"grid_bounds", empty ? Json(nullptr)
+                                      : Json{rounded_m(frame.origin.x()), rounded_m(frame.origin.y()), rounded_m(right),
+                                             rounded_m(top)}},
+                {"exploring", std::any_of(s.robots.begin(), s.robots.end(), [](const auto& r) { return r.exploring; })},
+                {"stopped", std::any_of(s.robots.begin(), s.robots.end(), [](const auto& r) { return r.stopped; })}};
   if (s.layout) floor["turn_rad"] = rounded_rad(s.layout->turn_rad);
   return floor;
 }
@@ -74,8 +74,8 @@ PartTable info_table(const Snapshot& s, const ServerView& view) {
   table["floor"] = to_text(floor_json(s, view));
   if (s.layout && s.merged) table["plan_mesh"] = to_text(plan_mesh(s.layout->layout, s.merged->layout_to_map));
   if (s.sketch)
-    table["sketch"] = to_text({{"size", {s.sketch->sketch.width_px, s.sketch->sketch.height_px}},
-                               {"warning", s.sketch->warning}});
+    table["sketch"] =
+        to_text({{"size", {s.sketch->sketch.width_px, s.sketch->sketch.height_px}}, {"warning", s.sketch->warning}});
   return table;
 }
 
@@ -204,9 +204,8 @@ PartTable sketch_gap_table(const Snapshot& s) {
   if (!s.sketch) return table;
   for (std::size_t i = 0; i < s.sketch->gaps.size(); ++i) {
     const SketchGap& gap = s.sketch->gaps[i];
-    table[std::to_string(i)] = to_text({{"a", point_json(gap.gap_px.a, 0.1)},
-                                        {"b", point_json(gap.gap_px.b, 0.1)},
-                                        {"closed", gap.closed_by_us}});
+    table[std::to_string(i)] = to_text(
+        {{"a", point_json(gap.gap_px.a, 0.1)}, {"b", point_json(gap.gap_px.b, 0.1)}, {"closed", gap.closed_by_us}});
   }
   return table;
 }
@@ -260,22 +259,38 @@ PartTable anchor_table(const ServerView& view) {
 
 PartTable part_table(Part part, const Snapshot& snapshot, const ServerView& view) {
   switch (part) {
-    case Part::kInfo: return info_table(snapshot, view);
-    case Part::kLayoutWalls: return layout_wall_table(snapshot);
-    case Part::kWalls: return wall_table(snapshot);
-    case Part::kLinks: return link_table(snapshot);
-    case Part::kRobots: return robot_table(snapshot);
-    case Part::kPois: return poi_table(snapshot);
-    case Part::kGoals: return goal_table(snapshot);
-    case Part::kStrokes: return stroke_table(snapshot);
-    case Part::kSketchRegions: return sketch_region_table(snapshot);
-    case Part::kSketchGaps: return sketch_gap_table(snapshot);
-    case Part::kPlanRegions: return plan_region_table(snapshot);
-    case Part::kPairs: return pair_table(snapshot);
-    case Part::kMatch: return match_table(snapshot);
-    case Part::kPeople: return {};
-    case Part::kAlerts: return alert_table(snapshot);
-    case Part::kAnchors: return anchor_table(view);
+    case Part::kInfo:
+      return info_table(snapshot, view);
+    case Part::kLayoutWalls:
+      return layout_wall_table(snapshot);
+    case Part::kWalls:
+      return wall_table(snapshot);
+    case Part::kLinks:
+      return link_table(snapshot);
+    case Part::kRobots:
+      return robot_table(snapshot);
+    case Part::kPois:
+      return poi_table(snapshot);
+    case Part::kGoals:
+      return goal_table(snapshot);
+    case Part::kStrokes:
+      return stroke_table(snapshot);
+    case Part::kSketchRegions:
+      return sketch_region_table(snapshot);
+    case Part::kSketchGaps:
+      return sketch_gap_table(snapshot);
+    case Part::kPlanRegions:
+      return plan_region_table(snapshot);
+    case Part::kPairs:
+      return pair_table(snapshot);
+    case Part::kMatch:
+      return match_table(snapshot);
+    case Part::kPeople:
+      return {};
+    case Part::kAlerts:
+      return alert_table(snapshot);
+    case Part::kAnchors:
+      return anchor_table(view);
   }
   return {};
 }

@@ -4,8 +4,8 @@ namespace smokemap::server {
 namespace {
 
 constexpr std::array<const char*, kPartCount> kPartWords{
-    "info",        "layout_walls", "walls", "links", "robots", "pois",  "goals", "strokes", "sketch_regions",
-    "sketch_gaps", "plan_regions", "pairs", "match", "people", "alerts", "anchors"};
+    "info",           "layout_walls", "walls",        "links", "robots", "pois",   "goals",  "strokes",
+    "sketch_regions", "sketch_gaps",  "plan_regions", "pairs", "match",  "people", "alerts", "anchors"};
 constexpr std::size_t kMostDeleted = 5'000;
 
 std::string quoted(const std::string& text) { return to_text(Json(text)); }
@@ -18,9 +18,7 @@ class DeltaWriter {
         reset_(reset),
         max_bytes_(max_bytes) {}
 
-  void set(const std::string& id, const std::string& json) {
-    append(set_, quoted(id) + ":" + json);
-  }
+  void set(const std::string& id, const std::string& json) { append(set_, quoted(id) + ":" + json); }
   void del(const std::string& id) { append(del_, quoted(id)); }
   std::vector<std::string> finish(bool even_if_empty) {
     if (!set_.empty() || !del_.empty() || (even_if_empty && messages_.empty())) flush();

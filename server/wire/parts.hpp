@@ -15,8 +15,22 @@ namespace smokemap::server {
 
 /// The tables of docs/wire.md, section 2.
 enum class Part {
-  kInfo, kLayoutWalls, kWalls, kLinks, kRobots, kPois, kGoals, kStrokes, kSketchRegions, kSketchGaps, kPlanRegions,
-  kPairs, kMatch, kPeople, kAlerts, kAnchors
+  kInfo,
+  kLayoutWalls,
+  kWalls,
+  kLinks,
+  kRobots,
+  kPois,
+  kGoals,
+  kStrokes,
+  kSketchRegions,
+  kSketchGaps,
+  kPlanRegions,
+  kPairs,
+  kMatch,
+  kPeople,
+  kAlerts,
+  kAnchors
 };
 constexpr std::size_t kPartCount = 16;
 
@@ -44,8 +58,8 @@ struct Person {
 };
 PartTable people_table(const std::map<std::string, Person>& people);
 
-/// One part with the history needed to bring anybody up to date: every object knows the revision at which it last changed,
-/// and deleted ids are remembered. Immutable once published.
+/// One part with the history needed to bring anybody up to date: every object knows the revision at which it last
+/// changed, and deleted ids are remembered. Immutable once published.
 struct PartState {
   struct Object {
     std::uint64_t changed = 0;
@@ -60,8 +74,8 @@ struct PartState {
 /// The next state, or null when nothing changed.
 std::shared_ptr<const PartState> advance(const PartState& state, const PartTable& table);
 
-/// `delta` messages that bring a browser from revision `from` (0 = nothing) to `state`; none when it is there already or
-/// when there is nothing to say to a fresh one. Each at most about `max_bytes`.
+/// `delta` messages that bring a browser from revision `from` (0 = nothing) to `state`; none when it is there already
+/// or when there is nothing to say to a fresh one. Each at most about `max_bytes`.
 std::vector<std::string> delta_messages(Part part, const PartState& state, std::uint64_t from,
                                         std::size_t max_bytes = 32 * 1024);
 

@@ -4,9 +4,12 @@ namespace smokemap::server {
 
 const char* to_string(Role role) {
   switch (role) {
-    case Role::kObserver: return "observer";
-    case Role::kFirefighter: return "firefighter";
-    case Role::kCommander: return "commander";
+    case Role::kObserver:
+      return "observer";
+    case Role::kFirefighter:
+      return "firefighter";
+    case Role::kCommander:
+      return "commander";
   }
   return "observer";
 }

@@ -38,9 +38,9 @@ using PackedTile = std::array<std::uint8_t, kTileBytes>;
 
 std::uint8_t code_at(const PackedTile& tile, int column, int row);
 
-/// Sensed occupancy with the plan over it: walls of the plan where nothing was seen are kCodePlanOnly, walls that the plan
-/// has but the building has not are kCodeGone (unless something occupied is there). The sensed grid may have any frame;
-/// a finer one keeps its most occupied cell. Cost: O(cells of the sensed grid).
+/// Sensed occupancy with the plan over it: walls of the plan where nothing was seen are kCodePlanOnly, walls that the
+/// plan has but the building has not are kCodeGone (unless something occupied is there). The sensed grid may have any
+/// frame; a finer one keeps its most occupied cell. Cost: O(cells of the sensed grid).
 std::map<TileKey, PackedTile> merged_tiles(const OccupancyGrid& sensed, const MergedMap& merged, double resolution_m);
 
 /// One version of a tile, ready to be sent.

@@ -118,7 +118,8 @@ void Hub::run() {
       input = input_;
     }
     const auto steady_ms = [] {
-      return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+      return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch())
+          .count();
     };
     const auto state = encoder_.update(input, steady_ms());
     due_ms = encoder_.due_ms();

@@ -20,8 +20,8 @@ namespace smokemap::server {
 class Peer {
  public:
   virtual ~Peer() = default;
-  virtual void wake() = 0;                                        ///< there is a newer LiveState
-  virtual void deliver(SharedBytes text, bool may_be_lost) = 0;   ///< ink of others
+  virtual void wake() = 0;                                       ///< there is a newer LiveState
+  virtual void deliver(SharedBytes text, bool may_be_lost) = 0;  ///< ink of others
   virtual void shut(int code, const char* reason) = 0;
 };
 

@@ -7,9 +7,9 @@ namespace {
 
 /// Small and urgent before large.
 constexpr std::array<Part, kPartCount> kPartOrder{
-    Part::kRobots,      Part::kInfo,  Part::kGoals, Part::kPois,         Part::kAlerts,     Part::kPeople,
-    Part::kAnchors,     Part::kMatch, Part::kPairs, Part::kWalls,        Part::kLinks,      Part::kStrokes,
-    Part::kLayoutWalls, Part::kSketchRegions,       Part::kSketchGaps,   Part::kPlanRegions};
+    Part::kRobots,      Part::kInfo,          Part::kGoals,      Part::kPois,       Part::kAlerts, Part::kPeople,
+    Part::kAnchors,     Part::kMatch,         Part::kPairs,      Part::kWalls,      Part::kLinks,  Part::kStrokes,
+    Part::kLayoutWalls, Part::kSketchRegions, Part::kSketchGaps, Part::kPlanRegions};
 
 }  // namespace
 
@@ -29,7 +29,8 @@ bool LiveSession::within_rate(std::size_t bytes, std::int64_t now_ms) {
   const double seconds = static_cast<double>(std::max<std::int64_t>(0, now_ms - last_rate_ms_)) * 1e-3;
   last_rate_ms_ = now_ms;
   message_allowance_ = std::min(2 * params_.messages_per_s, message_allowance_ + seconds * params_.messages_per_s) - 1;
-  byte_allowance_ = std::min(2 * params_.bytes_per_s, byte_allowance_ + seconds * params_.bytes_per_s) - static_cast<double>(bytes);
+  byte_allowance_ =
+      std::min(2 * params_.bytes_per_s, byte_allowance_ + seconds * params_.bytes_per_s) - static_cast<double>(bytes);
   return message_allowance_ >= 0 && byte_allowance_ >= 0;
 }
 

@@ -18,8 +18,8 @@ namespace smokemap::server {
 /// Close codes of docs/wire.md.
 enum CloseCode { kGoingAway = 1001, kNoToken = 4001, kProtocolError = 4003, kTooSlow = 4008, kTooMany = 4029 };
 
-/// The protocol of one socket, without the socket: messages in, frames out when the socket can take one. Confined to the
-/// socket's strand.
+/// The protocol of one socket, without the socket: messages in, frames out when the socket can take one. Confined to
+/// the socket's strand.
 ///
 /// Nothing grows while a browser is slow. What must arrive (answers to commands) has a bounded queue, beyond which the
 /// socket is closed; parts and tiles are not queued at all: when the socket is free, whatever is newest and not yet
@@ -27,14 +27,14 @@ enum CloseCode { kGoingAway = 1001, kNoToken = 4001, kProtocolError = 4003, kToo
 class LiveSession {
  public:
   struct Params {
-    std::size_t control_bytes = 256 * 1024;   ///< then 4008
-    std::size_t losable_bytes = 64 * 1024;    ///< ink is dropped beyond
-    std::size_t frame_bytes = 64 * 1024;      ///< of tiles
-    int credit = 2;                           ///< map frames on their way
+    std::size_t control_bytes = 256 * 1024;  ///< then 4008
+    std::size_t losable_bytes = 64 * 1024;   ///< ink is dropped beyond
+    std::size_t frame_bytes = 64 * 1024;     ///< of tiles
+    int credit = 2;                          ///< map frames on their way
     std::int64_t hello_ms = 5'000;
     double messages_per_s = 200;
-    double bytes_per_s = 256 * 1024;          ///< bursts of two seconds are let through
-    std::int64_t presence_ms = 500;           ///< more often is ignored
+    double bytes_per_s = 256 * 1024;  ///< bursts of two seconds are let through
+    std::int64_t presence_ms = 500;   ///< more often is ignored
   };
   struct World {
     Access& access;

@@ -1,4 +1,5 @@
-// The socket of one browser: everything on its strand, one read and one write outstanding. What to say is LiveSession's.
+// The socket of one browser: everything on its strand, one read and one write outstanding. What to say is
+// LiveSession's.
 
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -26,7 +27,12 @@ constexpr const char* kProtocol = "smokemap.v1";
 class WsSession final : public Peer, public std::enable_shared_from_this<WsSession> {
  public:
   WsSession(RawUpgrade upgrade, Hub& hub, std::shared_ptr<const Clock> clock)
-      : ws_(std::move(upgrade.socket)), timer_(ws_.get_executor()), request_(std::move(upgrade.request)), alive_(std::move(upgrade.alive)), hub_(hub), clock_(std::move(clock)) {}
+      : ws_(std::move(upgrade.socket)),
+        timer_(ws_.get_executor()),
+        request_(std::move(upgrade.request)),
+        alive_(std::move(upgrade.alive)),
+        hub_(hub),
+        clock_(std::move(clock)) {}
 
   void start(const LiveSession::Params& params, Access& access, CommandSink& commands) {
     LiveSession::World world{access, hub_, commands, clock_, weak_from_this(), {}};
@@ -37,7 +43,9 @@ class WsSession final : public Peer, public std::enable_shared_from_this<WsSessi
     on_strand([](WsSession& s) { s.accept(); });
   }
 
-  void wake() override { on_strand([](WsSession&) {}); }
+  void wake() override {
+    on_strand([](WsSession&) {});
+  }
   void deliver(SharedBytes text, bool may_be_lost) override {
     on_strand([text, may_be_lost](WsSession& s) { s.live_->on_deliver(text, may_be_lost); });
   }
@@ -92,10 +100,14 @@ class WsSession final : public Peer, public std::enable_shared_from_this<WsSessi
   }
 
   void on_read(error_code failed) {
-    if (failed == websocket::error::message_too_big) live_->close(kProtocolError, "the message is too large");
-    else if (failed) return shut_down();
-    else if (!ws_.got_text()) live_->on_binary();
-    else live_->on_text({static_cast<const char*>(buffer_.data().data()), buffer_.size()}, now_ms());
+    if (failed == websocket::error::message_too_big)
+      live_->close(kProtocolError, "the message is too large");
+    else if (failed)
+      return shut_down();
+    else if (!ws_.got_text())
+      live_->on_binary();
+    else
+      live_->on_text({static_cast<const char*>(buffer_.data().data()), buffer_.size()}, now_ms());
     buffer_.consume(buffer_.size());
     write_next();
     if (!live_->closing()) read();

@@ -106,7 +106,7 @@ TEST(Layering, EveryIncludeOfTheEngineGoesDown) {
 
 TEST(Layering, ServerSpeaksToTheEngineThroughItsFacade) {
   // The server may know the nouns and the facade, not the methods.
-  const std::set<std::string> methods{"layout", "sketch",       "segmentation", "topology", "features", "slam",
+  const std::set<std::string> methods{"layout", "sketch",       "segmentation", "topology",   "features",   "slam",
                                       "acg",    "localization", "matching",     "navigation", "simulation", "robots"};
   static const std::regex include(R"re(#\s*include\s*"([a-z_]+)/)re");
   for (const auto& entry : fs::recursive_directory_iterator(SMOKEMAP_SOURCE_DIR "/server")) {
@@ -138,7 +138,8 @@ TEST(Layering, NoSourceFileIsLongerThanFourHundredLines) {
 }
 
 TEST(Layering, EveryTypeInAHeaderHasANameOfItsOwn) {
-  // All of the engine shares one namespace: two types of one name in one program are undefined behaviour without a word.
+  // All of the engine shares one namespace: two types of one name in one program are undefined behaviour without a
+  // word.
   static const std::regex definition(R"(^(struct|class|enum class) ([A-Z][A-Za-z0-9]+)( final)?( :[^;]*)? *\{)");
   std::map<std::string, fs::path> seen;
   for (const char* folder : {"/engine", "/server"})
@@ -155,7 +156,8 @@ TEST(Layering, EveryTypeInAHeaderHasANameOfItsOwn) {
 }
 
 TEST(Rules, RefuseNeighboursAndUpperFloors) {
-  std::istringstream in("floor 0 core\nfloor 1 geometry\nfloor 1 grids\nside 1 tools\ntop app\nhome boost boost/ : app\n");
+  std::istringstream in(
+      "floor 0 core\nfloor 1 geometry\nfloor 1 grids\nside 1 tools\ntop app\nhome boost boost/ : app\n");
   const Rules rules = read_rules(in);
   EXPECT_TRUE(complaints(rules, "geometry", "#include \"core/result.hpp\"\n#include \"geometry/pose2.hpp\"\n").empty());
   EXPECT_EQ(complaints(rules, "geometry", "#include \"grids/grid.hpp\"\n").size(), 1u);

@@ -1,6 +1,6 @@
-// How well and how fast plans are read: random buildings drawn as evacuation plans (flat sheet, and photographed), walls
-// scored by length within 0.5 % of the plan, as share found (recall) and share right (precision). Data: simulation, seeds below.
-// One thread's CPU time.
+// How well and how fast plans are read: random buildings drawn as evacuation plans (flat sheet, and photographed),
+// walls scored by length within 0.5 % of the plan, as share found (recall) and share right (precision). Data:
+// simulation, seeds below. One thread's CPU time.
 #include <array>
 #include <cstdio>
 #include <ctime>
@@ -75,11 +75,13 @@ int main() {
       }
       auto found = segments(reading->layout);
       if (photo)
-        for (auto& s : found) s = {through(picture->homography.H_layout_photo, s.a), through(picture->homography.H_layout_photo, s.b)};
+        for (auto& s : found)
+          s = {through(picture->homography.H_layout_photo, s.a), through(picture->homography.H_layout_photo, s.b)};
       const auto drawn = segments(truth.layout);
       const double tolerance = 0.005 * picture->sheet.cols;
-      std::printf("%-6d %-6s %8.3f %10.3f %6zu %8zu %7.2f\n", seed, photo ? "photo" : "sheet", covered_share(drawn, found, tolerance),
-                  covered_share(found, drawn, tolerance), reading->layout.rooms_px.size(), truth.layout.rooms_px.size(), cpu);
+      std::printf("%-6d %-6s %8.3f %10.3f %6zu %8zu %7.2f\n", seed, photo ? "photo" : "sheet",
+                  covered_share(drawn, found, tolerance), covered_share(found, drawn, tolerance),
+                  reading->layout.rooms_px.size(), truth.layout.rooms_px.size(), cpu);
     }
   }
 }

@@ -1,7 +1,8 @@
 // Bytes of the live map while a robot explores, and what it costs to encode and to fan out.
 //   build/release/tests/live_map_bench
-// A building of 10 m rooms, 60 x 60 m at 0.05 m; 0.5 m/s, 360 beams of 10 m at 10 Hz, 60 s; seed 1. Each beam changes the
-// cells it crosses by a noisy step, so occupancies creep: that is harder on the encoder than a map with three values.
+// A building of 10 m rooms, 60 x 60 m at 0.05 m; 0.5 m/s, 360 beams of 10 m at 10 Hz, 60 s; seed 1. Each beam changes
+// the cells it crosses by a noisy step, so occupancies creep: that is harder on the encoder than a map with three
+// values.
 
 #include <algorithm>
 #include <chrono>

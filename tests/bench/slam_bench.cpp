@@ -41,15 +41,16 @@ void run(const char* path) {
   std::sort(scan_ms.begin(), scan_ms.end());
   double front_s = 0;
   for (const double ms : scan_ms) front_s += ms / 1e3;
-  std::printf("%-40s %6zu %8.2f %8.2f %8.2f %8.2f %8.2f %6zu %4lld/%lld\n", path, scan_ms.size(), front_s, graph_s, polish_s,
-              scan_ms[scan_ms.size() / 2], scan_ms[scan_ms.size() * 99 / 100], slam.graph().nodes.size(),
-              static_cast<long long>(slam.counters().loops_closed), static_cast<long long>(slam.counters().loops_rejected));
+  std::printf("%-40s %6zu %8.2f %8.2f %8.2f %8.2f %8.2f %6zu %4lld/%lld\n", path, scan_ms.size(), front_s, graph_s,
+              polish_s, scan_ms[scan_ms.size() / 2], scan_ms[scan_ms.size() * 99 / 100], slam.graph().nodes.size(),
+              static_cast<long long>(slam.counters().loops_closed),
+              static_cast<long long>(slam.counters().loops_rejected));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::printf("%-40s %6s %8s %8s %8s %8s %8s %6s %s\n", "log", "scans", "front s", "graph s", "polish s", "p50 ms", "p99 ms", "nodes",
-              "loops closed/refused");
+  std::printf("%-40s %6s %8s %8s %8s %8s %8s %6s %s\n", "log", "scans", "front s", "graph s", "polish s", "p50 ms",
+              "p99 ms", "nodes", "loops closed/refused");
   for (int i = 1; i < argc; ++i) run(argv[i]);
 }

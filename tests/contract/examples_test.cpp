@@ -82,7 +82,8 @@ TEST(Examples, OfMapFramesSayWhatTheyClaim) {
     const Json described = example(name);
     const std::string hex = described["hex"];
     std::string bytes;
-    for (std::size_t i = 0; i < hex.size(); i += 2) bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
+    for (std::size_t i = 0; i < hex.size(); i += 2)
+      bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
     const auto frame = decode_map_frame(bytes);
     ASSERT_THAT(frame, test::IsOk()) << name;
     EXPECT_EQ(frame->type, described["says"]["type"]);
@@ -118,8 +119,9 @@ TEST(Encoder, WritesWhatTheSchemasPromise) {
   ServerView view{"/api/plans/x/rectified", {{"a1", {Point2(1, 2), Point2(3, 4)}}}};
   for (std::size_t i = 0; i < kPartCount; ++i) {
     const auto part = static_cast<Part>(i);
-    const PartTable table = part == Part::kPeople ? people_table({{"d1", {"Anna", "commander", "operate", Point2(1, 2), 5}}})
-                                                  : part_table(part, snapshot, view);
+    const PartTable table = part == Part::kPeople
+                                ? people_table({{"d1", {"Anna", "commander", "operate", Point2(1, 2), 5}}})
+                                : part_table(part, snapshot, view);
     EXPECT_FALSE(table.empty()) << to_string(part);
     for (const auto& [id, text] : table)
       EXPECT_EQ(parts.complaint(Json::parse(text), parts.def(definition(to_string(part), id))), "") << to_string(part);
@@ -132,8 +134,9 @@ TEST(Encoder, WritesMessagesAsTheSchemasPromise) {
   const auto rules = schema("server");
   const Identity who{"d1", "Anna", Role::kCommander};
   for (const std::string& text :
-       {welcome_message({who, 5, 6, 7, 0.05}), reply_message({"c1", 9, "", ""}), reply_message({"c1", std::nullopt, "forbidden", "no"}),
-        reply_message({"c1", 4, "conflict", "no"}), pong_message(1.5, 2), ink_message(who, {"s", {Point2(1, 2)}}), bye_message("stop")})
+       {welcome_message({who, 5, 6, 7, 0.05}), reply_message({"c1", 9, "", ""}),
+        reply_message({"c1", std::nullopt, "forbidden", "no"}), reply_message({"c1", 4, "conflict", "no"}),
+        pong_message(1.5, 2), ink_message(who, {"s", {Point2(1, 2)}}), bye_message("stop")})
     EXPECT_EQ(rules.complaint(Json::parse(text), rules.root()), "") << text;
 }
 

@@ -57,8 +57,8 @@ std::size_t place(const Bytes& bytes, std::mt19937_64& random) {
 }
 
 void falsify_length(Bytes& bytes, std::mt19937_64& random) {
-  constexpr std::array<std::uint64_t, 10> kLengths{0,          1,          0x7F,       0xFF,           0xFFFF,
-                                                   0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0x7FFFFFFFFFFF, ~std::uint64_t{0}};
+  constexpr std::array<std::uint64_t, 10> kLengths{
+      0, 1, 0x7F, 0xFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0x7FFFFFFFFFFF, ~std::uint64_t{0}};
   const std::size_t width = std::size_t{1} << uniform_index(random, 4);
   if (bytes.size() < width) return;
   const std::uint64_t length = kLengths[uniform_index(random, kLengths.size())];
@@ -66,10 +66,12 @@ void falsify_length(Bytes& bytes, std::mt19937_64& random) {
 }
 
 void replace_word(Bytes& bytes, std::mt19937_64& random) {
-  constexpr std::array<std::string_view, 14> kWords{"0",     "-1",   "1e308", "-1e-308", "nan", "inf", "99999999999999999999",
-                                                    "",      "null", "[]",    "{}",      "\"",  "\n",  "\xC3\x28"};
+  constexpr std::array<std::string_view, 14> kWords{
+      "0", "-1",   "1e308", "-1e-308", "nan", "inf", "99999999999999999999",
+      "",  "null", "[]",    "{}",      "\"",  "\n",  "\xC3\x28"};
   const auto is_word = [](std::uint8_t c) { return c > ' ' && c != ',' && c != '[' && c != ']'; };
-  const auto begin = std::find_if(bytes.begin() + static_cast<std::ptrdiff_t>(place(bytes, random)), bytes.end(), is_word);
+  const auto begin =
+      std::find_if(bytes.begin() + static_cast<std::ptrdiff_t>(place(bytes, random)), bytes.end(), is_word);
   const auto end = std::find_if_not(begin, bytes.end(), is_word);
   const std::string_view word = kWords[uniform_index(random, kWords.size())];
   const auto at = bytes.erase(begin, end);
@@ -88,18 +90,26 @@ void wound(Bytes& bytes, const std::vector<Bytes>& corpus, std::mt19937_64& rand
     case 1:
       if (!bytes.empty()) bytes[at] = static_cast<std::uint8_t>(random());
       return;
-    case 2: return falsify_length(bytes, random);
-    case 3: bytes.resize(at); return;  // the end is missing
-    case 4: bytes.erase(first, last); return;
+    case 2:
+      return falsify_length(bytes, random);
+    case 3:
+      bytes.resize(at);
+      return;  // the end is missing
+    case 4:
+      bytes.erase(first, last);
+      return;
     case 5: {
       const Bytes part(first, last);
       bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(place(bytes, random)), part.begin(), part.end());
       return;
     }
-    case 6: return replace_word(bytes, random);
+    case 6:
+      return replace_word(bytes, random);
     default: {
       const Bytes& other = corpus[uniform_index(random, corpus.size())];
-      if (at < other.size()) bytes.assign(bytes.begin(), first), bytes.insert(bytes.end(), other.begin() + static_cast<std::ptrdiff_t>(at), other.end());
+      if (at < other.size())
+        bytes.assign(bytes.begin(), first),
+            bytes.insert(bytes.end(), other.begin() + static_cast<std::ptrdiff_t>(at), other.end());
       return;
     }
   }
@@ -142,6 +152,7 @@ int main(int argc, char** argv) {
   for (std::uint64_t run = 0; run < runs; ++run) fuzz::run_one(fuzz::mutate(corpus, random));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::printf("%llu inputs from %zu seeds, seed %llu: clean, %.0f a second\n", static_cast<unsigned long long>(runs),
-              corpus.size(), static_cast<unsigned long long>(seed), static_cast<double>(runs) / std::max(seconds, 1e-9));
+              corpus.size(), static_cast<unsigned long long>(seed),
+              static_cast<double>(runs) / std::max(seconds, 1e-9));
   return 0;
 }

@@ -16,6 +16,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 }
 
 std::vector<fuzz::Bytes> fuzz::seed_corpus() {
-  return {bytes_of("/api/plans/0123/picture?v=abc&page=%31"), bytes_of("/a%20b/%C3%A4?x=1&&y#z"), bytes_of("127.0.0.1:8080"),
-          bytes_of("http://localhost:8080")};
+  return {bytes_of("/api/plans/0123/picture?v=abc&page=%31"), bytes_of("/a%20b/%C3%A4?x=1&&y#z"),
+          bytes_of("127.0.0.1:8080"), bytes_of("http://localhost:8080")};
 }

@@ -11,7 +11,8 @@ using namespace smokemap;
 /// The bytes are a small gray picture, row by row. Whatever it shows, an answer keeps its promises.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 2) return 0;
-  const int width = 8 + data[0] % 88, height = std::min(96, static_cast<int>((size - 1) / static_cast<std::size_t>(width)));
+  const int width = 8 + data[0] % 88,
+            height = std::min(96, static_cast<int>((size - 1) / static_cast<std::size_t>(width)));
   if (height < 1) return 0;
   cv::Mat picture(height, width, CV_8UC1);
   std::copy_n(data + 1, picture.total(), picture.data);
@@ -22,7 +23,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto& map = reading->layout;
   const auto corners = static_cast<int>(map.corners.size());
   for (const auto& w : map.walls) {
-    ENGINE_EXPECT(w.corner_a >= 0 && w.corner_b >= 0 && w.corner_a < corners && w.corner_b < corners && w.corner_a != w.corner_b);
+    ENGINE_EXPECT(w.corner_a >= 0 && w.corner_b >= 0 && w.corner_a < corners && w.corner_b < corners &&
+                  w.corner_a != w.corner_b);
     ENGINE_EXPECT(w.confidence >= 0 && w.confidence <= 1);
   }
   for (const auto& c : map.corners) ENGINE_EXPECT(c.p_px.allFinite());

@@ -19,6 +19,7 @@ std::vector<fuzz::Bytes> fuzz::seed_corpus() {
   const auto tile = [](TileKey key, const PackedTile& packed) {
     return std::make_shared<const EncodedTile>(encode_tile(key, 3, packed));
   };
-  return {bytes_of(map_frame({1, 2, 3}, {tile({0, 0}, cells), tile({-1, 5}, other)})), bytes_of(end_of_snapshot_frame({1, 2, 3})),
+  return {bytes_of(map_frame({1, 2, 3}, {tile({0, 0}, cells), tile({-1, 5}, other)})),
+          bytes_of(end_of_snapshot_frame({1, 2, 3})),
           bytes_of(map_frame({1, 2, 3}, {tile({7, 7}, cells), tile({8, 7}, cells), tile({9, 7}, cells)}))};
 }

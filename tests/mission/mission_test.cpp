@@ -1,7 +1,8 @@
 // The main job from end to end without a browser: explore, correct the plan, reach a room that no robot has seen.
+#include "tests/support/mission.hpp"
+
 #include <gtest/gtest.h>
 
-#include "tests/support/mission.hpp"
 #include "tests/support/result_matchers.hpp"
 
 namespace smokemap {

@@ -9,7 +9,8 @@
 
 namespace smokemap::test {
 
-inline constexpr std::chrono::seconds kPatience{20};  ///< far beyond what a loaded machine needs; reached only on failure
+inline constexpr std::chrono::seconds kPatience{
+    20};  ///< far beyond what a loaded machine needs; reached only on failure
 
 /// What callbacks on other threads deliver; whoever waits is woken by each.
 template <typename T>

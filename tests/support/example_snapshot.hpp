@@ -28,7 +28,8 @@ inline Snapshot example_snapshot() {
   merged->fit = {0.8, "fits"};
   auto sketch = std::make_shared<SketchView>();
   sketch->sketch.strokes = {{"s1", "Bo", StrokeKind::kWall, 3, {Point2(10, 10), Point2(50, 10)}}};
-  sketch->regions = {{1, {Point2(0, 0), Point2(9, 0), Point2(9, 9)}, RegionKind::kRoom}, {2, {Point2(9, 9)}, RegionKind::kCorridor}};
+  sketch->regions = {{1, {Point2(0, 0), Point2(9, 0), Point2(9, 9)}, RegionKind::kRoom},
+                     {2, {Point2(9, 9)}, RegionKind::kCorridor}};
   sketch->gaps = {{{Point2(1, 1), Point2(2, 2)}, true}};
   auto match = std::make_shared<MatchView>();
   match->matching.pairs = {{1, 5, 0.8, Verdict::kProposed}};
@@ -43,7 +44,8 @@ inline Snapshot example_snapshot() {
   robot.T_map_robot = Pose2(1, 2, 0.5);
   robot.path_map = {Point2(1, 2), Point2(3, 2)};
   s.robots = {robot};
-  PointOfInterest poi{"p1", PoiKind::kGasBottle, {PlaceFrame::kLayoutPx, Point2(200, 300), 1}, "acetylene", "Anna", 5'000'000, false};
+  PointOfInterest poi{
+      "p1", PoiKind::kGasBottle, {PlaceFrame::kLayoutPx, Point2(200, 300), 1}, "acetylene", "Anna", 5'000'000, false};
   PointOfInterest lost{"p2", PoiKind::kVictim, {PlaceFrame::kSketchPx, Point2(20, 30), 1}, "", "Bo", 6'000'000, false};
   s.pois = {{poi, {Point2(1, 1), 0.3, 0.9, ""}}, {lost, {std::nullopt, 0, 0, "no counterpart"}}};
   Goal goal;

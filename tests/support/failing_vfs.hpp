@@ -61,17 +61,27 @@ class FailingVfs {
     ours->methods.xWrite = [](sqlite3_file* f, const void* from, int n, sqlite3_int64 at) {
       return fails() ? SQLITE_FULL : inner(f)->pMethods->xWrite(inner(f), from, n, at);
     };
-    ours->methods.xTruncate = [](sqlite3_file* f, sqlite3_int64 n) { return inner(f)->pMethods->xTruncate(inner(f), n); };
+    ours->methods.xTruncate = [](sqlite3_file* f, sqlite3_int64 n) {
+      return inner(f)->pMethods->xTruncate(inner(f), n);
+    };
     ours->methods.xSync = [](sqlite3_file* f, int how) {
       return fails() ? SQLITE_IOERR_FSYNC : inner(f)->pMethods->xSync(inner(f), how);
     };
-    ours->methods.xFileSize = [](sqlite3_file* f, sqlite3_int64* n) { return inner(f)->pMethods->xFileSize(inner(f), n); };
+    ours->methods.xFileSize = [](sqlite3_file* f, sqlite3_int64* n) {
+      return inner(f)->pMethods->xFileSize(inner(f), n);
+    };
     ours->methods.xLock = [](sqlite3_file* f, int how) { return inner(f)->pMethods->xLock(inner(f), how); };
     ours->methods.xUnlock = [](sqlite3_file* f, int how) { return inner(f)->pMethods->xUnlock(inner(f), how); };
-    ours->methods.xCheckReservedLock = [](sqlite3_file* f, int* is) { return inner(f)->pMethods->xCheckReservedLock(inner(f), is); };
-    ours->methods.xFileControl = [](sqlite3_file* f, int op, void* arg) { return inner(f)->pMethods->xFileControl(inner(f), op, arg); };
+    ours->methods.xCheckReservedLock = [](sqlite3_file* f, int* is) {
+      return inner(f)->pMethods->xCheckReservedLock(inner(f), is);
+    };
+    ours->methods.xFileControl = [](sqlite3_file* f, int op, void* arg) {
+      return inner(f)->pMethods->xFileControl(inner(f), op, arg);
+    };
     ours->methods.xSectorSize = [](sqlite3_file* f) { return inner(f)->pMethods->xSectorSize(inner(f)); };
-    ours->methods.xDeviceCharacteristics = [](sqlite3_file* f) { return inner(f)->pMethods->xDeviceCharacteristics(inner(f)); };
+    ours->methods.xDeviceCharacteristics = [](sqlite3_file* f) {
+      return inner(f)->pMethods->xDeviceCharacteristics(inner(f));
+    };
     ours->base.pMethods = &ours->methods;
     return SQLITE_OK;
   }

@@ -8,8 +8,8 @@
 
 namespace smokemap::test {
 
-/// Takes every command and shows points of interest, strokes, goals and stops; understands nothing. Refuses robots called
-/// "nobody". Snapshots come at once, on the caller's thread.
+/// Takes every command and shows points of interest, strokes, goals and stops; understands nothing. Refuses robots
+/// called "nobody". Snapshots come at once, on the caller's thread.
 class FakeEngine final : public server::EnginePort {
  public:
   FakeEngine() {

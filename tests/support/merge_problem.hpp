@@ -16,11 +16,11 @@ struct MergeProblemParams {
   double stretch = 0.10;
   int missing_walls = 0;
   int phantom_walls = 0;
-  double sigma_step_m = 0.004;   ///< odometry noise per step
+  double sigma_step_m = 0.004;  ///< odometry noise per step
   double sigma_step_rad = 0.002;
   double start_error_m = 0.2;
   double start_error_rad = 0.03;
-  std::size_t max_stops = 100;   ///< places to visit
+  std::size_t max_stops = 100;  ///< places to visit
 };
 
 /// A building, a wrong plan of it, what a robot saw of it, and the truth in map (frame of the first pose).
@@ -28,9 +28,9 @@ struct MergeProblem {
   LayoutMap plan;
   PlanStart start;
   PoseGraph graph;
-  std::vector<Pose2> true_poses;          ///< per node
-  std::vector<Point2> true_corners;       ///< per plan corner
-  std::vector<bool> wall_exists;          ///< per plan wall
+  std::vector<Pose2> true_poses;     ///< per node
+  std::vector<Point2> true_corners;  ///< per plan corner
+  std::vector<bool> wall_exists;     ///< per plan wall
 };
 
 MergeProblem make_merge_problem(const FloorPlan& building, const MergeProblemParams& params);

@@ -8,7 +8,9 @@ namespace {
 class DirectDrive final : public RobotCommands {
  public:
   explicit DirectDrive(SimulatedRobot& robot) : robot_(robot) {}
-  void drive(const std::string&, double speed_mps, double turn_rate_radps) override { robot_.command(speed_mps, turn_rate_radps); }
+  void drive(const std::string&, double speed_mps, double turn_rate_radps) override {
+    robot_.command(speed_mps, turn_rate_radps);
+  }
 
  private:
   SimulatedRobot& robot_;
@@ -23,7 +25,9 @@ double median(std::vector<double> values) {
 class Mission {
  public:
   Mission(const DemoScenario& demo, const MissionParams& params)
-      : demo_(demo), params_(params), layout_(params.layout.value_or(demo.truth.layout)),
+      : demo_(demo),
+        params_(params),
+        layout_(params.layout.value_or(demo.truth.layout)),
         robot_(demo_robot_params(demo), demo.T_world_start),
         core_(FleetParams{}, std::make_shared<DirectDrive>(robot_)) {}
 
@@ -41,7 +45,8 @@ class Mission {
  private:
   void begin() {
     ENGINE_EXPECT(core_.apply(SetLayout{"plan", layout_}, Origin::kLive).ok());
-    ENGINE_EXPECT(core_.apply(SetStart{robot_.name(), demo_.start.layout_px, demo_.start.heading_rad}, Origin::kLive).ok());
+    ENGINE_EXPECT(
+        core_.apply(SetStart{robot_.name(), demo_.start.layout_px, demo_.start.heading_rad}, Origin::kLive).ok());
     ENGINE_EXPECT(core_.apply(SetExploring{robot_.name(), true}, Origin::kLive).ok());
     merge();
     before_ = corner_errors(false);
@@ -89,7 +94,8 @@ class Mission {
     std::vector<bool> exists(truth.corners.size(), false), seen(truth.corners.size(), true);
     for (std::size_t i = 0; i < truth.walls.size(); ++i)
       if (demo_.truth.wall_source[i] >= 0)
-        exists[static_cast<std::size_t>(truth.walls[i].corner_a)] = exists[static_cast<std::size_t>(truth.walls[i].corner_b)] = true;
+        exists[static_cast<std::size_t>(truth.walls[i].corner_a)] =
+            exists[static_cast<std::size_t>(truth.walls[i].corner_b)] = true;
     if (seen_only)
       for (std::size_t i = 0; i < seen.size(); ++i)
         seen[i] = !params_.layout && i < snapshot.merged->corners.size() && snapshot.merged->corners[i].seen;
@@ -114,7 +120,8 @@ class Mission {
     r.after_seen_median_m = median(seen);
     r.bumps = robot_.drive().bumps();
     const Pose2 T_map_true = demo_.T_world_start.inverse() * robot_.true_pose();
-    if (!snapshot.robots.empty()) r.pose_error_m = (snapshot.robots.front().T_map_robot.translation() - T_map_true.translation()).norm();
+    if (!snapshot.robots.empty())
+      r.pose_error_m = (snapshot.robots.front().T_map_robot.translation() - T_map_true.translation()).norm();
     if (!snapshot.goals.empty()) {
       r.goal = snapshot.goals.front().goal.state;
       r.reason = snapshot.goals.front().goal.reason;

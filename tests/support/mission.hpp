@@ -14,8 +14,8 @@
 namespace smokemap::test {
 
 struct MissionParams {
-  double explore_s = 20;       ///< before the goal is given
-  double limit_s = 300;        ///< simulated
+  double explore_s = 20;            ///< before the goal is given
+  double limit_s = 300;             ///< simulated
   std::optional<LayoutMap> layout;  ///< as some reader gave it; none = what a perfect reader would give
   std::function<void(const SessionCore&, double t_s)> every_second;
 };
@@ -23,18 +23,18 @@ struct MissionParams {
 struct MissionResult {
   GoalState goal = GoalState::kQueued;
   std::string reason;
-  double goal_error_m = 0;       ///< of the robot's true place when the goal ended
-  double time_s = 0;             ///< simulated, until the goal ended
-  double before_median_m = 0;    ///< plan corners of true walls: the plan laid down at the start
-  double after_median_m = 0;     ///< the same after merging
+  double goal_error_m = 0;         ///< of the robot's true place when the goal ended
+  double time_s = 0;               ///< simulated, until the goal ended
+  double before_median_m = 0;      ///< plan corners of true walls: the plan laid down at the start
+  double after_median_m = 0;       ///< the same after merging
   double after_seen_median_m = 0;  ///< only corners that were seen
   int seen = 0, corners = 0;
   int bumps = 0;
-  double pose_error_m = 0;       ///< of the robot on the map, at the end
+  double pose_error_m = 0;  ///< of the robot on the map, at the end
 };
 
-/// The demo without threads, network or browser, in simulated time: the robot explores, then a goal on the plan in a room that
-/// it never saw. The same seed gives the same result.
+/// The demo without threads, network or browser, in simulated time: the robot explores, then a goal on the plan in a
+/// room that it never saw. The same seed gives the same result.
 MissionResult run_mission(const DemoScenario& demo, const MissionParams& params);
 
 }  // namespace smokemap::test

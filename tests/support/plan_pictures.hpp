@@ -17,8 +17,8 @@ namespace smokemap::test {
 
 /// A drawn floor plan and, for every free pixel, which room it belongs to.
 struct PlanPicture {
-  cv::Mat free_space;  ///< CV_8UC1, 255 = free
-  cv::Mat rooms;       ///< CV_16UC1, 0 = wall, 1 = corridor, then rooms
+  cv::Mat free_space;           ///< CV_8UC1, 255 = free
+  cv::Mat rooms;                ///< CV_16UC1, 0 = wall, 1 = corridor, then rooms
   std::vector<cv::Rect> boxes;  ///< of room 1, 2, ...
 };
 
@@ -54,8 +54,8 @@ inline PlanPicture office_plan(std::mt19937_64& random, int rooms_a_side = 4) {
 struct SketchHabits {
   int quarter_turns = 0;
   double scale = 1.2;
-  double stretch = 1.0;      ///< along the corridor over across it
-  double bend_px = 6;        ///< how far walls wander
+  double stretch = 1.0;  ///< along the corridor over across it
+  double bend_px = 6;    ///< how far walls wander
   double tilt_rad = 0.03;
   int rooms_left_out = 0;
 };
@@ -67,7 +67,8 @@ struct PlanSketch {
   std::set<int> left_out;
 
   Point2 on_plan(const Point2& p_sketch) const {
-    const cv::Vec2f p = to_plan.at<cv::Vec2f>(static_cast<int>(std::lround(p_sketch.y())), static_cast<int>(std::lround(p_sketch.x())));
+    const cv::Vec2f p =
+        to_plan.at<cv::Vec2f>(static_cast<int>(std::lround(p_sketch.y())), static_cast<int>(std::lround(p_sketch.x())));
     return {p[0], p[1]};
   }
 };

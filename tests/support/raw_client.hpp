@@ -25,8 +25,10 @@ struct HttpAnswer {
 
 class RawClient {
  public:
-  explicit RawClient(std::uint16_t port, int receive_buffer_bytes = 0) : port_(port), fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
-    if (receive_buffer_bytes > 0) ::setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_buffer_bytes, sizeof receive_buffer_bytes);
+  explicit RawClient(std::uint16_t port, int receive_buffer_bytes = 0)
+      : port_(port), fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    if (receive_buffer_bytes > 0)
+      ::setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_buffer_bytes, sizeof receive_buffer_bytes);
     sockaddr_in to{};
     to.sin_family = AF_INET;
     to.sin_port = htons(port);
@@ -90,11 +92,13 @@ class RawClient {
   }
 
   /// The handshake; the status, 101 when it worked.
-  int upgrade(const std::string& target = "/api/live", const std::string& extra_headers = "Sec-WebSocket-Protocol: smokemap.v1\r\n",
+  int upgrade(const std::string& target = "/api/live",
+              const std::string& extra_headers = "Sec-WebSocket-Protocol: smokemap.v1\r\n",
               const std::string& host_header = {}) {
     send("GET " + target + " HTTP/1.1\r\nHost: " + (host_header.empty() ? host() : host_header) +
          "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
-         "Sec-WebSocket-Version: 13\r\n" + extra_headers + "\r\n");
+         "Sec-WebSocket-Version: 13\r\n" +
+         extra_headers + "\r\n");
     return answer().status;
   }
 
@@ -106,7 +110,8 @@ class RawClient {
     } else {
       const bool wide = payload.size() > 0xffff;
       frame += static_cast<char>(mask_bit | (wide ? 127 : 126));
-      for (int shift = wide ? 56 : 8; shift >= 0; shift -= 8) frame += static_cast<char>((payload.size() >> shift) & 0xff);
+      for (int shift = wide ? 56 : 8; shift >= 0; shift -= 8)
+        frame += static_cast<char>((payload.size() >> shift) & 0xff);
     }
     if (masked) frame += std::string(4, '\0');  // a mask of zeros is a mask
     frame += payload;

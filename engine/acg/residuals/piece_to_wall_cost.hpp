@@ -33,7 +33,8 @@ class PieceToWallCost {
     }
     return true;
   }
-  static ceres::CostFunction* Create(const Segment2& piece_robot, double side, double half_thickness_m, double sigma_m) {
+  static ceres::CostFunction* Create(const Segment2& piece_robot, double side, double half_thickness_m,
+                                     double sigma_m) {
     return new ceres::AutoDiffCostFunction<PieceToWallCost, 2, 3, 2, 2>(
         new PieceToWallCost(piece_robot, side, half_thickness_m, sigma_m));
   }

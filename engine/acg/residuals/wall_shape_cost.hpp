@@ -14,7 +14,10 @@ namespace smokemap {
 class WallShapeCost {
  public:
   WallShapeCost(double length_m, double heading_rad, double sigma_along_m, double sigma_across_m)
-      : length_m_(length_m), heading_rad_(heading_rad), sigma_along_m_(sigma_along_m), sigma_across_m_(sigma_across_m) {}
+      : length_m_(length_m),
+        heading_rad_(heading_rad),
+        sigma_along_m_(sigma_along_m),
+        sigma_across_m_(sigma_across_m) {}
 
   template <typename T>
   bool operator()(const T* a, const T* b, const T* turn, const T* log_scale, T* residual) const {

@@ -50,7 +50,8 @@ double pose_rmse(const MergeProblem& problem, const MergedMap& merged) {
 bool all_finite(const MergedMap& merged) {
   return std::all_of(merged.walls.begin(), merged.walls.end(),
                      [](const MergedWall& w) { return w.segment_map.a.allFinite() && w.segment_map.b.allFinite(); }) &&
-         std::all_of(merged.trajectory.begin(), merged.trajectory.end(), [](const StampedPose& p) { return p.T_map_robot.is_finite(); });
+         std::all_of(merged.trajectory.begin(), merged.trajectory.end(),
+                     [](const StampedPose& p) { return p.T_map_robot.is_finite(); });
 }
 
 TEST(AutoCompleteGraph, PutsTheCornersOfAStretchedPlanWhereTheyAre) {
@@ -155,7 +156,8 @@ TEST(AutoCompleteGraph, GrowsWithTheGraphAndNeverTurnsAWallWildly) {
     for (const MergedWall& w : next->walls) {
       if (!w.layout_wall || w.segment_map.length() < 1.5) continue;
       const auto& drawn = problem.plan.walls[static_cast<std::size_t>(*w.layout_wall)];
-      const Point2 a = problem.true_corners[static_cast<std::size_t>(drawn.corner_a)], b = problem.true_corners[static_cast<std::size_t>(drawn.corner_b)];
+      const Point2 a = problem.true_corners[static_cast<std::size_t>(drawn.corner_a)],
+                   b = problem.true_corners[static_cast<std::size_t>(drawn.corner_b)];
       EXPECT_LT(line_angle_between(w.segment_map.heading(), Segment2{a, b}.heading()), 0.12);
     }
     merged = std::move(*next);
@@ -187,7 +189,8 @@ TEST(AutoCompleteGraph, WithoutAPlanHandsOnTheTrajectoryAndSensedWalls) {
   EXPECT_THAT(merged->trajectory.back().T_map_robot, IsNear(problem.graph.nodes.back().T_map_robot, 1e-9, 1e-9));
   EXPECT_TRUE(merged->corners.empty());
   EXPECT_EQ(merged->fit.verdict, "unknown");
-  EXPECT_TRUE(std::all_of(merged->walls.begin(), merged->walls.end(), [](const MergedWall& w) { return w.state == WallState::kNew; }));
+  EXPECT_TRUE(std::all_of(merged->walls.begin(), merged->walls.end(),
+                          [](const MergedWall& w) { return w.state == WallState::kNew; }));
 }
 
 TEST(AutoCompleteGraph, SaysThatThePlanOfAnotherBuildingDoesNotFit) {
@@ -237,7 +240,8 @@ TEST(CorrectedPose, BlendsTheCorrectionsOfTheNodesAround) {
     merged.trajectory.emplace_back();
     merged.trajectory.back().T_map_robot = Pose2(i, 0.2 * i, 0);
   }
-  EXPECT_THAT(corrected_pose(graph, merged, from_seconds(0.5), Pose2(0.5, 0, 0)), IsNear(Pose2(0.5, 0.1, 0), 1e-9, 1e-9));
+  EXPECT_THAT(corrected_pose(graph, merged, from_seconds(0.5), Pose2(0.5, 0, 0)),
+              IsNear(Pose2(0.5, 0.1, 0), 1e-9, 1e-9));
   EXPECT_THAT(corrected_pose(graph, merged, from_seconds(3), Pose2(3, 0, 0)), IsNear(Pose2(3, 0.2, 0), 1e-9, 1e-9));
   EXPECT_THAT(corrected_pose({}, merged, 0, Pose2(3, 0, 0)), IsNear(Pose2(3, 0, 0), 1e-9, 1e-9));
 }

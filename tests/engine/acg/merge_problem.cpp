@@ -34,7 +34,8 @@ struct Cutter {
   }
 };
 
-Cutter cut(const FloorPlan& drawn, const std::vector<Point2>& corner_world, const std::vector<int>& wall_source, MergeProblem* problem) {
+Cutter cut(const FloorPlan& drawn, const std::vector<Point2>& corner_world, const std::vector<int>& wall_source,
+           MergeProblem* problem) {
   Cutter out;
   Point2 high = drawn.corners.front();
   out.low = high;
@@ -132,8 +133,10 @@ MergeProblem make_merge_problem(const FloorPlan& building, const MergeProblemPar
       edge.from = static_cast<int>(i) - 1;
       edge.to = static_cast<int>(i);
       edge.T_from_to = noisy;
-      edge.sqrt_information = Eigen::Vector3d(1 / std::max(0.002, params.sigma_step_m), 1 / std::max(0.002, params.sigma_step_m),
-                                              1 / std::max(0.001, params.sigma_step_rad)).asDiagonal();
+      edge.sqrt_information =
+          Eigen::Vector3d(1 / std::max(0.002, params.sigma_step_m), 1 / std::max(0.002, params.sigma_step_m),
+                          1 / std::max(0.001, params.sigma_step_rad))
+              .asDiagonal();
       out.graph.edges.push_back(edge);
     }
     node.T_map_robot = node.T_odom_robot = drifted;
@@ -142,9 +145,11 @@ MergeProblem make_merge_problem(const FloorPlan& building, const MergeProblemPar
   }
   const PixelFrame frame = out.plan.frame();
   const Point2 start_drawn = plan.warp(way.front().translation()) - cutter.low;
-  const Point2 start_px = PixelFrame{cutter.height_px, kMetresPerPixel}.to_pixels(start_drawn) + Point2(kMargin_px, -kMargin_px);
-  out.start.T_layout_robot = Pose2(frame.to_metres(start_px) + Point2(normal(random, params.start_error_m), normal(random, params.start_error_m)),
-                                   way.front().heading() + normal(random, params.start_error_rad));
+  const Point2 start_px =
+      PixelFrame{cutter.height_px, kMetresPerPixel}.to_pixels(start_drawn) + Point2(kMargin_px, -kMargin_px);
+  out.start.T_layout_robot = Pose2(
+      frame.to_metres(start_px) + Point2(normal(random, params.start_error_m), normal(random, params.start_error_m)),
+      way.front().heading() + normal(random, params.start_error_rad));
   out.start.sigma_m = std::max(0.1, params.start_error_m);
   out.start.sigma_rad = std::max(0.02, params.start_error_rad);
   return out;
@@ -152,7 +157,8 @@ MergeProblem make_merge_problem(const FloorPlan& building, const MergeProblemPar
 
 PoseGraph first_nodes(const PoseGraph& graph, std::size_t nodes) {
   PoseGraph out;
-  out.nodes.assign(graph.nodes.begin(), graph.nodes.begin() + static_cast<std::ptrdiff_t>(std::min(nodes, graph.nodes.size())));
+  out.nodes.assign(graph.nodes.begin(),
+                   graph.nodes.begin() + static_cast<std::ptrdiff_t>(std::min(nodes, graph.nodes.size())));
   for (const PoseEdge& e : graph.edges)
     if (static_cast<std::size_t>(std::max(e.from, e.to)) < nodes) out.edges.push_back(e);
   return out;

@@ -25,7 +25,8 @@ TEST(ResultDeathTest, TakingTheValueOfAFailureIsABrokenPromise) {
 }
 
 TEST(ParamCheck, NamesTheFirstFieldOutOfRangeAndItsValue) {
-  const auto result = ParamCheck("SlamParams").positive("cell_m", 0.1).in_range("gate_m", -2, 0, 1).positive("x", -1).result();
+  const auto result =
+      ParamCheck("SlamParams").positive("cell_m", 0.1).in_range("gate_m", -2, 0, 1).positive("x", -1).result();
   ASSERT_THAT(result, test::Fails(Errc::kInvalidArgument));
   EXPECT_EQ(result.error().message, "SlamParams.gate_m is -2, must be within [0, 1]");
 }

@@ -14,7 +14,8 @@ using test::Fails;
 using test::IsNearPoint;
 using test::IsOk;
 
-void sample(std::vector<PosedHit>& hits, const Segment2& wall, const Point2& seen_from, double sigma_m, std::mt19937_64& random) {
+void sample(std::vector<PosedHit>& hits, const Segment2& wall, const Point2& seen_from, double sigma_m,
+            std::mt19937_64& random) {
   const int count = static_cast<int>(wall.length() / 0.05);
   for (int i = 0; i <= count; ++i) {
     const Point2 p = wall.a + (wall.b - wall.a) * (static_cast<double>(i) / count);
@@ -116,7 +117,8 @@ TEST(Corners, OfARoomOpenIntoTheRoom) {
     EXPECT_GT(inwards.dot(Point2(std::cos(corner.orientation_rad), std::sin(corner.orientation_rad))), 0.9);
     EXPECT_GT(corner.confidence, 0.5);
   }
-  EXPECT_TRUE(std::any_of(corners.begin(), corners.end(), [](const Corner& c) { return (c.position - Point2(6, 4)).norm() < 0.03; }));
+  EXPECT_TRUE(std::any_of(corners.begin(), corners.end(),
+                          [](const Corner& c) { return (c.position - Point2(6, 4)).norm() < 0.03; }));
 }
 
 TEST(Corners, OfAPillarOpenAwayFromIt) {
@@ -132,9 +134,9 @@ TEST(Corners, OfAPillarOpenAwayFromIt) {
 }
 
 TEST(Corners, ATJunctionHasTwo) {
-  const WallLine through{{{0, 0}, {6, 0}}, 100, 0.01, 0.005, 0.01};          // free above
-  const WallLine right_face{{{3, 3}, {3, 0.1}}, 50, 0.01, 0.005, 0.01};      // free towards +x
-  const WallLine left_face{{{2.9, 0.1}, {2.9, 3}}, 50, 0.01, 0.005, 0.01};   // free towards -x
+  const WallLine through{{{0, 0}, {6, 0}}, 100, 0.01, 0.005, 0.01};         // free above
+  const WallLine right_face{{{3, 3}, {3, 0.1}}, 50, 0.01, 0.005, 0.01};     // free towards +x
+  const WallLine left_face{{{2.9, 0.1}, {2.9, 3}}, 50, 0.01, 0.005, 0.01};  // free towards -x
   const auto corners = find_corners({through, right_face, left_face});
   ASSERT_EQ(corners.size(), 2u);
   for (const Corner& corner : corners) EXPECT_NEAR(corner.opening_rad, kPi / 2, 1e-6);
@@ -144,7 +146,8 @@ TEST(Corners, ATJunctionHasTwo) {
 
 TEST(Corners, AreNotMadeOfWallsThatFaceAwayOrEndFarApart) {
   const WallLine floor_line{{{0, 0}, {3, 0}}, 50, 0.01, 0.005, 0.01};  // free above
-  const WallLine below{{{3, -3}, {3, -0.1}}, 50, 0.01, 0.005, 0.01};   // below it, free towards -x: no common free sector
+  const WallLine below{
+      {{3, -3}, {3, -0.1}}, 50, 0.01, 0.005, 0.01};  // below it, free towards -x: no common free sector
   EXPECT_TRUE(find_corners({floor_line, below}).empty());
   const WallLine far_away{{{5, 1}, {5, 4}}, 50, 0.01, 0.005, 0.01};
   EXPECT_TRUE(find_corners({floor_line, far_away}).empty());

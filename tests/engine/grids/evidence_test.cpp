@@ -13,7 +13,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-Vector2d anywhere(std::mt19937_64& random, double half) { return {uniform(random, -half, half), uniform(random, -half, half)}; }
+Vector2d anywhere(std::mt19937_64& random, double half) {
+  return {uniform(random, -half, half), uniform(random, -half, half)};
+}
 
 TEST(WalkRay, PassesEveryCellThatSamplesOfTheLineLieIn) {
   std::mt19937_64 random(1);
@@ -58,7 +60,8 @@ TEST(LogOddsGrid, TakingBackWhatWasAddedLeavesNothing) {
   for (int i = 0; i < 100; ++i) beams.emplace_back(anywhere(random, 4), anywhere(random, 4));
   for (std::size_t i = 0; i < 100; ++i) {
     if (i < 50) kept.add_hit(beams[i].first, beams[i].second);
-    i % 3 == 2 && i >= 50 ? both.add_free(beams[i].first, beams[i].second) : both.add_hit(beams[i].first, beams[i].second);
+    i % 3 == 2 && i >= 50 ? both.add_free(beams[i].first, beams[i].second)
+                          : both.add_hit(beams[i].first, beams[i].second);
   }
   for (std::size_t i = 50; i < 100; ++i)
     i % 3 == 2 ? both.remove_free(beams[i].first, beams[i].second) : both.remove_hit(beams[i].first, beams[i].second);

@@ -9,8 +9,8 @@
 
 namespace smokemap::testing {
 
-/// A drawn office with its truth: 2 x 3 rooms around a corridor, doors with leaf and arc, text, a sign, all in proportion to
-/// `unit` (pixels; 1 gives about 1600 x 1100).
+/// A drawn office with its truth: 2 x 3 rooms around a corridor, doors with leaf and arc, text, a sign, all in
+/// proportion to `unit` (pixels; 1 gives about 1600 x 1100).
 struct DrawnPlan {
   cv::Mat picture;
   std::vector<Segment2> walls;
@@ -20,12 +20,15 @@ struct DrawnPlan {
 };
 
 namespace detail {
-inline cv::Point px(const Point2& p) { return {static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))}; }
+inline cv::Point px(const Point2& p) {
+  return {static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))};
+}
 }  // namespace detail
 
 inline DrawnPlan draw_office(double unit = 1.0, bool clutter = true) {
   DrawnPlan plan;
-  plan.picture = cv::Mat(static_cast<int>(1100 * unit), static_cast<int>(1600 * unit), CV_8UC3, cv::Scalar(255, 255, 255));
+  plan.picture =
+      cv::Mat(static_cast<int>(1100 * unit), static_cast<int>(1600 * unit), CV_8UC3, cv::Scalar(255, 255, 255));
   plan.thickness_px = 12 * unit;
   const int outer = static_cast<int>(std::lround(12 * unit)), inner = static_cast<int>(std::lround(7 * unit));
   const auto wall = [&](double x1, double y1, double x2, double y2, int width) {
@@ -39,10 +42,13 @@ inline DrawnPlan draw_office(double unit = 1.0, bool clutter = true) {
     if (!clutter) return;
     const double width = x2 - x1;
     const int thin = std::max(1, static_cast<int>(std::lround(1.2 * unit)));
-    cv::line(plan.picture, detail::px(s.a), detail::px(unit * Point2(x1, y + side * width)), cv::Scalar(60, 60, 60), thin, cv::LINE_AA);
-    cv::ellipse(plan.picture, detail::px(s.a), cv::Size(static_cast<int>(width * unit), static_cast<int>(width * unit)), 0, side > 0 ? 0 : -90, side > 0 ? 90 : 0, cv::Scalar(60, 60, 60), thin, cv::LINE_AA);
+    cv::line(plan.picture, detail::px(s.a), detail::px(unit * Point2(x1, y + side * width)), cv::Scalar(60, 60, 60),
+             thin, cv::LINE_AA);
+    cv::ellipse(plan.picture, detail::px(s.a), cv::Size(static_cast<int>(width * unit), static_cast<int>(width * unit)),
+                0, side > 0 ? 0 : -90, side > 0 ? 90 : 0, cv::Scalar(60, 60, 60), thin, cv::LINE_AA);
   };
-  wall(200, 200, 1400, 200, outer), wall(1400, 200, 1400, 800, outer), wall(1400, 800, 200, 800, outer), wall(200, 800, 200, 200, outer);
+  wall(200, 200, 1400, 200, outer), wall(1400, 200, 1400, 800, outer), wall(1400, 800, 200, 800, outer),
+      wall(200, 800, 200, 200, outer);
   for (const double x : {600.0, 1000.0}) wall(x, 200, x, 440, inner), wall(x, 560, x, 800, inner);
   for (const double y : {440.0, 560.0}) {
     double from = 200;
@@ -54,9 +60,12 @@ inline DrawnPlan draw_office(double unit = 1.0, bool clutter = true) {
     wall(from, y, 1400, y, inner);
   }
   if (clutter) {
-    for (const double x : {360.0, 760.0, 1160.0}) cv::putText(plan.picture, "Office", detail::px(unit * Point2(x, 330)), cv::FONT_HERSHEY_SIMPLEX, 0.8 * unit, cv::Scalar(0, 0, 0), std::max(1, static_cast<int>(2 * unit)), cv::LINE_AA);
+    for (const double x : {360.0, 760.0, 1160.0})
+      cv::putText(plan.picture, "Office", detail::px(unit * Point2(x, 330)), cv::FONT_HERSHEY_SIMPLEX, 0.8 * unit,
+                  cv::Scalar(0, 0, 0), std::max(1, static_cast<int>(2 * unit)), cv::LINE_AA);
     const Point2 sign = unit * Point2(850, 500);
-    cv::rectangle(plan.picture, detail::px(sign), detail::px(sign + unit * Point2(36, 36)), cv::Scalar(80, 145, 0), cv::FILLED);
+    cv::rectangle(plan.picture, detail::px(sign), detail::px(sign + unit * Point2(36, 36)), cv::Scalar(80, 145, 0),
+                  cv::FILLED);
   }
   return plan;
 }

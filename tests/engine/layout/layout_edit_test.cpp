@@ -1,11 +1,10 @@
-#include "layout/edit.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
 #include "core/random.hpp"
+#include "layout/edit.hpp"
 #include "layout/layout_raster.hpp"
 
 namespace smokemap {
@@ -14,7 +13,8 @@ namespace {
 LayoutMap square() {
   LayoutMap map;
   map.width_px = 200, map.height_px = 200;
-  for (const auto& p : {Point2(20, 20), Point2(180, 20), Point2(180, 180), Point2(20, 180)}) map.corners.push_back({p, 2, 1});
+  for (const auto& p : {Point2(20, 20), Point2(180, 20), Point2(180, 180), Point2(20, 180)})
+    map.corners.push_back({p, 2, 1});
   for (int i = 0; i < 4; ++i) map.walls.push_back({i, (i + 1) % 4, 4, 1, false});
   return map;
 }

@@ -17,7 +17,8 @@ using testing::draw_office;
 using testing::wall_segments;
 
 int count_kind(const LayoutMap& map, OpeningKind kind) {
-  return static_cast<int>(std::count_if(map.openings.begin(), map.openings.end(), [&](const LayoutOpening& o) { return o.kind == kind; }));
+  return static_cast<int>(
+      std::count_if(map.openings.begin(), map.openings.end(), [&](const LayoutOpening& o) { return o.kind == kind; }));
 }
 
 TEST(ReadLayout, FindsEveryWallOfACleanDrawingAndNothingElse) {
@@ -72,7 +73,8 @@ TEST(ReadLayout, TurnsItsAnswerWithThePicture) {
   ASSERT_TRUE(reading.ok());
   std::vector<Segment2> truth;
   const double height = plan.picture.rows - 1;
-  for (const auto& w : plan.walls) truth.push_back({Point2(height - w.a.y(), w.a.x()), Point2(height - w.b.y(), w.b.x())});
+  for (const auto& w : plan.walls)
+    truth.push_back({Point2(height - w.a.y(), w.a.x()), Point2(height - w.b.y(), w.b.x())});
   const auto found = wall_segments(reading->layout);
   EXPECT_GT(covered_by(truth, found, 6), 0.97);
   EXPECT_GT(covered_by(found, truth, 6), 0.95);
@@ -82,7 +84,8 @@ TEST(ReadLayout, KeepsObliqueWallsOblique) {
   const auto plan = draw_office();
   const cv::Mat turn = cv::getRotationMatrix2D(cv::Point2f(800, 550), 17, 0.8);
   cv::Mat turned;
-  cv::warpAffine(plan.picture, turned, turn, plan.picture.size(), cv::INTER_AREA, cv::BORDER_CONSTANT, cv::Scalar(255, 255, 255));
+  cv::warpAffine(plan.picture, turned, turn, plan.picture.size(), cv::INTER_AREA, cv::BORDER_CONSTANT,
+                 cv::Scalar(255, 255, 255));
   const auto reading = read_layout(turned);
   ASSERT_TRUE(reading.ok());
   std::vector<Segment2> truth;
@@ -184,9 +187,11 @@ TEST(ReadLayout, GivesTheSameBytesAtAnyThreadCount) {
   const auto four = read_layout(plan.picture);
   ASSERT_TRUE(one.ok() && four.ok());
   ASSERT_EQ(one->layout.corners.size(), four->layout.corners.size());
-  for (std::size_t i = 0; i < one->layout.corners.size(); ++i) EXPECT_EQ(one->layout.corners[i].p_px, four->layout.corners[i].p_px);
+  for (std::size_t i = 0; i < one->layout.corners.size(); ++i)
+    EXPECT_EQ(one->layout.corners[i].p_px, four->layout.corners[i].p_px);
   ASSERT_EQ(one->layout.walls.size(), four->layout.walls.size());
-  for (std::size_t i = 0; i < one->layout.walls.size(); ++i) EXPECT_EQ(one->layout.walls[i].confidence, four->layout.walls[i].confidence);
+  for (std::size_t i = 0; i < one->layout.walls.size(); ++i)
+    EXPECT_EQ(one->layout.walls[i].confidence, four->layout.walls[i].confidence);
 }
 
 TEST(ReadLayout, ConfidencesAndDegreesAreWhatTheyClaim) {

@@ -17,9 +17,11 @@ cv::Mat photograph(const testing::DrawnPlan& plan) {
   const auto w = static_cast<float>(plan.picture.cols - 1), h = static_cast<float>(plan.picture.rows - 1);
   const cv::Point2f from[4] = {{0, 0}, {w, 0}, {w, h}, {0, h}};
   cv::Point2f to[4];
-  for (std::size_t i = 0; i < 4; ++i) to[i] = {static_cast<float>(kCorners[i].x()), static_cast<float>(kCorners[i].y())};
+  for (std::size_t i = 0; i < 4; ++i)
+    to[i] = {static_cast<float>(kCorners[i].x()), static_cast<float>(kCorners[i].y())};
   cv::Mat photo(1080, 1440, CV_8UC3, cv::Scalar(70, 80, 90));
-  cv::warpPerspective(plan.picture, photo, cv::getPerspectiveTransform(from, to), photo.size(), cv::INTER_AREA, cv::BORDER_TRANSPARENT);
+  cv::warpPerspective(plan.picture, photo, cv::getPerspectiveTransform(from, to), photo.size(), cv::INTER_AREA,
+                      cv::BORDER_TRANSPARENT);
   return photo;
 }
 
@@ -43,9 +45,11 @@ TEST(Sheet, RectifiesWhatWasTilted) {
   const auto reading = read_layout(photograph(plan), options);
   ASSERT_TRUE(reading.ok());
   // truth in rectified pixels: the sheet scaled to the rectified size
-  const double sx = (reading->rectified.cols - 1.0) / (plan.picture.cols - 1), sy = (reading->rectified.rows - 1.0) / (plan.picture.rows - 1);
+  const double sx = (reading->rectified.cols - 1.0) / (plan.picture.cols - 1),
+               sy = (reading->rectified.rows - 1.0) / (plan.picture.rows - 1);
   std::vector<Segment2> truth;
-  for (const auto& w : plan.walls) truth.push_back({Point2(w.a.x() * sx, w.a.y() * sy), Point2(w.b.x() * sx, w.b.y() * sy)});
+  for (const auto& w : plan.walls)
+    truth.push_back({Point2(w.a.x() * sx, w.a.y() * sy), Point2(w.b.x() * sx, w.b.y() * sy)});
   EXPECT_GT(testing::covered_by(truth, testing::wall_segments(reading->layout), 6), 0.93);
   EXPECT_EQ(reading->layout.width_px, reading->rectified.cols);
 }
@@ -66,7 +70,8 @@ TEST(Sheet, RefusesCornersThatMakeNoSheet) {
   const SheetCorners anticlockwise{Point2(0, 0), Point2(0, 200), Point2(300, 200), Point2(300, 0)};
   const SheetCorners tiny{Point2(0, 0), Point2(8, 0), Point2(8, 8), Point2(0, 8)};
   const SheetCorners nan{Point2(0, NAN), Point2(300, 0), Point2(300, 200), Point2(0, 200)};
-  for (const auto& corners : {crossed, anticlockwise, tiny, nan}) EXPECT_EQ(rectify_sheet(picture, corners, 40).error().code, Errc::kInvalidArgument);
+  for (const auto& corners : {crossed, anticlockwise, tiny, nan})
+    EXPECT_EQ(rectify_sheet(picture, corners, 40).error().code, Errc::kInvalidArgument);
 }
 
 TEST(Sheet, WithoutCornersTheLayoutStaysInPixelsOfThePicture) {

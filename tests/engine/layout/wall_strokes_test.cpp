@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/imgproc.hpp>
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <random>
 
 #include "core/random.hpp"
@@ -28,7 +28,9 @@ TEST(TraceStrokes, MeasuresOneObliqueLineToSubPixels) {
     const double angle = uniform(random, 0, kPi), width = 2 + static_cast<double>(uniform_index(random, 14));
     const Point2 middle(400, 400), half = 250 * Point2(std::cos(angle), std::sin(angle));
     cv::Mat dark = cv::Mat::zeros(800, 800, CV_8UC1);
-    const auto fixed = [](const Point2& p) { return cv::Point(static_cast<int>(std::lround(p.x() * 16)), static_cast<int>(std::lround(p.y() * 16))); };
+    const auto fixed = [](const Point2& p) {
+      return cv::Point(static_cast<int>(std::lround(p.x() * 16)), static_cast<int>(std::lround(p.y() * 16)));
+    };
     cv::line(dark, fixed(middle - half), fixed(middle + half), cv::Scalar(255), static_cast<int>(width), cv::LINE_8, 4);
     cv::GaussianBlur(dark, dark, {5, 5}, 0.9);
     const auto strokes = trace_strokes(dark, LayoutParams{});
@@ -61,14 +63,17 @@ TEST(PairHollow, LeavesLinesApartThatCrossOrAreFar) {
 }
 
 TEST(MergeCollinear, JoinsPiecesOfOneLineOnly) {
-  const auto merged = merge_collinear({stroke(0, 0, 50, 0, 4), stroke(51, 0.5, 120, 0.5, 4), stroke(0, 20, 100, 20, 4)}, 3, 2);
+  const auto merged =
+      merge_collinear({stroke(0, 0, 50, 0, 4), stroke(51, 0.5, 120, 0.5, 4), stroke(0, 20, 100, 20, 4)}, 3, 2);
   ASSERT_EQ(merged.size(), 2U);
   EXPECT_NEAR(std::max(merged[0].length(), merged[1].length()), 120, 1.0);
 }
 
 TEST(SelectWalls, LeavesThinLinesOut) {
-  std::vector<InkStroke> strokes{stroke(100, 100, 900, 100, 10), stroke(100, 700, 900, 700, 10), stroke(100, 100, 100, 700, 10), stroke(900, 100, 900, 700, 10),
-                                 stroke(500, 100, 500, 700, 5), stroke(100, 400, 500, 400, 5), stroke(500, 300, 900, 300, 5)};
+  std::vector<InkStroke> strokes{stroke(100, 100, 900, 100, 10), stroke(100, 700, 900, 700, 10),
+                                 stroke(100, 100, 100, 700, 10), stroke(900, 100, 900, 700, 10),
+                                 stroke(500, 100, 500, 700, 5),  stroke(100, 400, 500, 400, 5),
+                                 stroke(500, 300, 900, 300, 5)};
   for (int i = 0; i < 10; ++i) strokes.push_back(stroke(120, 120 + 10 * i, 220, 120 + 10 * i, 1.2));
   const auto chosen = select_walls(strokes, {1000, 800}, LayoutParams{});
   EXPECT_EQ(chosen.walls.size(), 7U);
@@ -77,11 +82,14 @@ TEST(SelectWalls, LeavesThinLinesOut) {
   EXPECT_LT(chosen.thin_limit_px, 5);
 }
 
-TEST(SelectWalls, HasNothingToSayAboutNothing) { EXPECT_TRUE(select_walls({}, {1000, 800}, LayoutParams{}).walls.empty()); }
+TEST(SelectWalls, HasNothingToSayAboutNothing) {
+  EXPECT_TRUE(select_walls({}, {1000, 800}, LayoutParams{}).walls.empty());
+}
 
 TEST(WallGraph, EndsMeetTheCentreLinesOfWhatTheyReach) {
   // a partition that ends at the faces of two outer walls, as ink does
-  const auto map = build_wall_graph({stroke(0, 0, 200, 0, 12), stroke(0, 100, 200, 100, 12), stroke(80, 6, 80, 94, 6)}, 12, LayoutParams{});
+  const auto map = build_wall_graph({stroke(0, 0, 200, 0, 12), stroke(0, 100, 200, 100, 12), stroke(80, 6, 80, 94, 6)},
+                                    12, LayoutParams{});
   EXPECT_EQ(map.walls.size(), 5U);
   int tees = 0;
   for (const auto& c : map.corners) tees += c.degree == 3;
@@ -89,7 +97,8 @@ TEST(WallGraph, EndsMeetTheCentreLinesOfWhatTheyReach) {
 }
 
 TEST(WallGraph, CornersOfARectangleCloseWhateverTheOrder) {
-  std::vector<InkStroke> strokes{stroke(6, 0, 194, 0, 12), stroke(200, 6, 200, 94, 12), stroke(194, 100, 6, 100, 12), stroke(0, 94, 0, 6, 12)};
+  std::vector<InkStroke> strokes{stroke(6, 0, 194, 0, 12), stroke(200, 6, 200, 94, 12), stroke(194, 100, 6, 100, 12),
+                                 stroke(0, 94, 0, 6, 12)};
   std::mt19937_64 random(3);
   for (int round = 0; round < 6; ++round) {
     std::shuffle(strokes.begin(), strokes.end(), random);
@@ -106,7 +115,9 @@ TEST(WallGraph, CrossingWallsCutEachOther) {
 }
 
 LayoutMap wall_with_gap(double from, double to) {
-  return build_wall_graph({stroke(0, 0, from, 0, 8), stroke(to, 0, 600, 0, 8), stroke(0, 0, 0, 300, 8), stroke(600, 0, 600, 300, 8), stroke(0, 300, 600, 300, 8)}, 8, LayoutParams{});
+  return build_wall_graph({stroke(0, 0, from, 0, 8), stroke(to, 0, 600, 0, 8), stroke(0, 0, 0, 300, 8),
+                           stroke(600, 0, 600, 300, 8), stroke(0, 300, 600, 300, 8)},
+                          8, LayoutParams{});
 }
 
 TEST(Openings, AGapBetweenFacingEndsIsAnOpening) {

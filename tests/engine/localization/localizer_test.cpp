@@ -15,8 +15,9 @@ using test::IsOk;
 
 /// Two rooms, a corridor and a niche: no two places look alike.
 std::vector<Segment2> small_flat() {
-  return {{{0, 0}, {10, 0}}, {{10, 0}, {10, 7}}, {{10, 7}, {0, 7}},   {{0, 7}, {0, 0}},  {{4, 0}, {4, 2.5}}, {{4, 3.5}, {4, 7}},
-          {{4, 4.5}, {7, 4.5}}, {{8, 4.5}, {10, 4.5}}, {{6, 0}, {6, 1.2}}, {{6, 1.2}, {7.5, 1.2}}, {{0, 5}, {1.5, 5}}};
+  return {{{0, 0}, {10, 0}},  {{10, 0}, {10, 7}},     {{10, 7}, {0, 7}},    {{0, 7}, {0, 0}},
+          {{4, 0}, {4, 2.5}}, {{4, 3.5}, {4, 7}},     {{4, 4.5}, {7, 4.5}}, {{8, 4.5}, {10, 4.5}},
+          {{6, 0}, {6, 1.2}}, {{6, 1.2}, {7.5, 1.2}}, {{0, 5}, {1.5, 5}}};
 }
 
 std::vector<Point2> scan_from(const SegmentWorld& world, const Pose2& pose, std::mt19937_64& random) {
@@ -59,7 +60,9 @@ Localizer drive(const Flat& flat, const std::vector<Pose2>& way, Localizer local
   auto random = random_stream(seed, 1);
   for (std::size_t i = 0; i < way.size(); ++i) {
     Pose2 step = i == 0 ? Pose2() : way[i - 1].inverse() * way[i];
-    if (i > 0) step = Pose2(step.x() + normal(random, 0.02), step.y() + normal(random, 0.02), step.heading() + normal(random, 0.02));
+    if (i > 0)
+      step = Pose2(step.x() + normal(random, 0.02), step.y() + normal(random, 0.02),
+                   step.heading() + normal(random, 0.02));
     localizer.update(step, scan_from(flat.world, way[i], random));
   }
   return localizer;

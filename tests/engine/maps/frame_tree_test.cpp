@@ -71,7 +71,9 @@ TEST(FrameTree, RefusesWhatIsNoRigidMotion) {
 
 TEST(FrameTree, TellsHowASensorSitsOnTheFloorPlan) {
   FrameTree tree;
-  const auto about = [](double angle, const Eigen::Vector3d& axis) { return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)); };
+  const auto about = [](double angle, const Eigen::Vector3d& axis) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
+  };
   tree.set("base", "upright", {1, 2, 3}, about(0.5, Eigen::Vector3d::UnitZ()));
   tree.set("base", "hanging", {0, 0, 0}, about(0.5, Eigen::Vector3d::UnitZ()) * about(kPi, Eigen::Vector3d::UnitX()));
   tree.set("base", "leaning", {0, 0, 0}, about(0.25, Eigen::Vector3d::UnitY()));

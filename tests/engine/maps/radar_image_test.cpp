@@ -62,7 +62,8 @@ TEST(RadarImageFaults, AreRefused) {
   EXPECT_THAT(spoilt(1, 2, 9), test::Fails(Errc::kCorrupt)) << "another range scale";
   EXPECT_THAT(spoilt(0, 3, -1), test::Fails(Errc::kCorrupt));
   EXPECT_THAT(spoilt(1, 4, std::numeric_limits<float>::infinity()), test::Fails(Errc::kCorrupt));
-  EXPECT_THAT(from_radar_rows(std::vector<float>(200 * 100, 1.f), 200, 100), test::Fails(Errc::kCorrupt)) << "a depth picture";
+  EXPECT_THAT(from_radar_rows(std::vector<float>(200 * 100, 1.f), 200, 100), test::Fails(Errc::kCorrupt))
+      << "a depth picture";
 }
 
 }  // namespace

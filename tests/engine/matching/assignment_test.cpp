@@ -33,7 +33,8 @@ double best_by_trying_all(const Eigen::MatrixXd& gain, Eigen::Index row, std::se
 TEST(BestAssignment, IsAsGoodAsTryingAllOfThem) {
   std::mt19937_64 random(1);
   for (int trial = 0; trial < 300; ++trial) {
-    const auto rows = 1 + static_cast<Eigen::Index>(uniform_index(random, 6)), cols = 1 + static_cast<Eigen::Index>(uniform_index(random, 6));
+    const auto rows = 1 + static_cast<Eigen::Index>(uniform_index(random, 6)),
+               cols = 1 + static_cast<Eigen::Index>(uniform_index(random, 6));
     Eigen::MatrixXd gain(rows, cols);
     for (Eigen::Index i = 0; i < rows; ++i)
       for (Eigen::Index j = 0; j < cols; ++j) gain(i, j) = uniform(random, -0.5, 1);

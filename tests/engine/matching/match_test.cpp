@@ -26,19 +26,24 @@ Segmentation truth_of(const test::PlanPicture& plan) {
 struct Judged {
   double right = 0, found = 0;
 };
-Judged judge(const Segmentation& a, const cv::Mat& rooms_a, const Segmentation& b, const cv::Mat& rooms_b, const Matching& matching) {
+Judged judge(const Segmentation& a, const cv::Mat& rooms_a, const Segmentation& b, const cv::Mat& rooms_b,
+             const Matching& matching) {
   double right = 0;
   std::set<int> found;
   for (const RegionPair& pair : matching.pairs) {
-    const bool same = test::true_room(a.labels, pair.label_a, rooms_a).room == test::true_room(b.labels, pair.label_b, rooms_b).room;
+    const bool same =
+        test::true_room(a.labels, pair.label_a, rooms_a).room == test::true_room(b.labels, pair.label_b, rooms_b).room;
     right += same;
     if (same) found.insert(pair.label_a);
   }
-  return {matching.pairs.empty() ? 0 : right / static_cast<double>(matching.pairs.size()), static_cast<double>(found.size()) / static_cast<double>(a.regions.size())};
+  return {matching.pairs.empty() ? 0 : right / static_cast<double>(matching.pairs.size()),
+          static_cast<double>(found.size()) / static_cast<double>(a.regions.size())};
 }
 
 bool has_pair(const std::vector<RegionPair>& pairs, int a, int b, Verdict verdict) {
-  return std::any_of(pairs.begin(), pairs.end(), [&](const RegionPair& pair) { return pair.label_a == a && pair.label_b == b && pair.verdict == verdict; });
+  return std::any_of(pairs.begin(), pairs.end(), [&](const RegionPair& pair) {
+    return pair.label_a == a && pair.label_b == b && pair.verdict == verdict;
+  });
 }
 
 TEST(Match, FindsAMapInItself) {
@@ -136,7 +141,9 @@ TEST(Match, JoinsTheHalvesOfARoomThatOneMapSplits) {
   ASSERT_THAT(matching, test::IsOk());
   std::map<int, int> partner;
   for (const RegionPair& pair : matching->pairs) partner[pair.label_a] = pair.label_b;
-  const auto label = [](const Segmentation& map, int x) { return static_cast<int>(map.labels.at<unsigned short>(40, x)); };
+  const auto label = [](const Segmentation& map, int x) {
+    return static_cast<int>(map.labels.at<unsigned short>(40, x));
+  };
   EXPECT_EQ(partner[label(a, 40)], label(b, 40));
   EXPECT_EQ(partner[label(a, 130)], label(b, 40));
   EXPECT_EQ(partner[label(a, 200)], label(b, 200));

@@ -125,7 +125,8 @@ TEST(PointTransfer, TakesDoorsToDoors) {
   for (const RegionBorder& border : truth.a.borders) {
     const Transferred place = transfer(border.line_px.midpoint());
     double nearest = 1e9;
-    for (const RegionBorder& other : truth.b.borders) nearest = std::min(nearest, (*place.p - other.line_px.midpoint()).norm());
+    for (const RegionBorder& other : truth.b.borders)
+      nearest = std::min(nearest, (*place.p - other.line_px.midpoint()).norm());
     EXPECT_LT(nearest, 8);
     ++doors;
   }

@@ -33,13 +33,12 @@ CostMap floor_from(const std::vector<std::string>& rows, double radius_m = 0.1) 
 
 Point2 at(const CostMap& map, int x, int row) { return map.frame().center_of({x, map.frame().height_cells - 1 - row}); }
 
-const std::vector<std::string> kTwoRooms{
-    "#############",  //
-    "#.....#~~~~~#",  //
-    "#.....#~~~~~#",  //
-    "#......~~~~~#",  //
-    "#.....#~~~~~#",  //
-    "#############"};
+const std::vector<std::string> kTwoRooms{"#############",  //
+                                         "#.....#~~~~~#",  //
+                                         "#.....#~~~~~#",  //
+                                         "#......~~~~~#",  //
+                                         "#.....#~~~~~#",  //
+                                         "#############"};
 
 TEST(PlanPath, GoesThroughTheDoorIntoARoomNobodySaw) {
   const CostMap map = floor_from(kTwoRooms);
@@ -59,7 +58,8 @@ TEST(PlanPath, SaysWhyThereIsNoWay) {
   const auto no_way = plan_path(map, at(map, 1, 1), at(map, 11, 1), {});
   ASSERT_THAT(no_way, test::Fails(Errc::kDegenerate));
   EXPECT_EQ(no_way.error().message, "no way there is known");
-  EXPECT_EQ(plan_path(map, at(map, 1, 1), at(map, 6, 1), exact).error().message, "the place is inside a wall or an obstacle");
+  EXPECT_EQ(plan_path(map, at(map, 1, 1), at(map, 6, 1), exact).error().message,
+            "the place is inside a wall or an obstacle");
   EXPECT_EQ(plan_path(map, at(map, 1, 1), {99, 99}, exact).error().message,
             "the place is neither on the plan nor seen by a robot");
 }
@@ -98,8 +98,10 @@ TEST(CostToCome, AgreesWithBruteForceOnRandomFloors) {
     const auto fast = cost_to_come(map, map.frame().center_of(*start), {});
     const auto slow = brute_costs(map, *start);
     for (std::size_t i = 0; i < fast.size(); ++i) {
-      if (slow[i] > 1e17) EXPECT_TRUE(std::isinf(fast[i]));
-      else EXPECT_NEAR(static_cast<double>(fast[i]), slow[i], 1e-3);
+      if (slow[i] > 1e17)
+        EXPECT_TRUE(std::isinf(fast[i]));
+      else
+        EXPECT_NEAR(static_cast<double>(fast[i]), slow[i], 1e-3);
     }
   }
 }
@@ -111,7 +113,8 @@ TEST(PlanPath, NeverTouchesBlockedGround) {
     for (auto& row : rows)
       for (char& c : row) c = uniform01(random) < 0.15 ? '#' : '.';
     const CostMap map = floor_from(rows);
-    const auto path = plan_path(map, {uniform(random, 0, 5), uniform(random, 0, 5)}, {uniform(random, 0, 5), uniform(random, 0, 5)}, {});
+    const auto path = plan_path(map, {uniform(random, 0, 5), uniform(random, 0, 5)},
+                                {uniform(random, 0, 5), uniform(random, 0, 5)}, {});
     if (!path) continue;
     for (std::size_t i = 2; i < path->points.size(); ++i)  // the first piece may leave a tight place
       for (int k = 0; k <= 50; ++k) {
@@ -226,7 +229,8 @@ TEST(Pilot, StandsBeforeAnObstacleItsMapDoesNotKnow) {
   Pilot pilot{PilotParams{}};
   pilot.set_map(map);
   pilot.set_target(at(*map, 5, 1));
-  const std::vector<Point2> wall_ahead{{0.25, 0}, {0.25, 0.05}, {0.25, -0.05}, {-0.25, 0}, {-0.25, 0.05}, {-0.25, -0.05}};
+  const std::vector<Point2> wall_ahead{{0.25, 0},  {0.25, 0.05},  {0.25, -0.05},
+                                       {-0.25, 0}, {-0.25, 0.05}, {-0.25, -0.05}};
   for (int i = 0; i < 200; ++i)
     EXPECT_LE(pilot.step(from_seconds(i * 0.05), Pose2(at(*map, 1, 1), 0), wall_ahead).twist.speed_mps, 0);
 }

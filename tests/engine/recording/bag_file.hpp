@@ -18,7 +18,8 @@ class ScratchFolder {
  public:
   ScratchFolder() {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = std::string("smokemap_") + info->test_suite_name() + "_" + info->name() + "_" + std::to_string(getpid());
+    std::string name =
+        std::string("smokemap_") + info->test_suite_name() + "_" + info->name() + "_" + std::to_string(getpid());
     std::replace(name.begin(), name.end(), '/', '_');  // of parametrised tests
     path_ = std::filesystem::temp_directory_path() / name;
     std::filesystem::remove_all(path_);
@@ -63,10 +64,11 @@ class BagFile {
              const std::string& format = "cdr") {
     const auto [known, is_new] = topics_.try_emplace(topic, topics_.size() + 1);
     if (is_new)
-      run("INSERT INTO topics VALUES(" + std::to_string(known->second) + ", '" + topic + "', '" + type + "', '" + format +
-          "', '')");
+      run("INSERT INTO topics VALUES(" + std::to_string(known->second) + ", '" + topic + "', '" + type + "', '" +
+          format + "', '')");
     sqlite3_stmt* insert = nullptr;
-    sqlite3_prepare_v2(database_, "INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)", -1, &insert, nullptr);
+    sqlite3_prepare_v2(database_, "INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)", -1, &insert,
+                       nullptr);
     sqlite3_bind_int64(insert, 1, static_cast<sqlite3_int64>(known->second));
     sqlite3_bind_int64(insert, 2, time);
     sqlite3_bind_blob(insert, 3, cdr.data(), static_cast<int>(cdr.size()), SQLITE_TRANSIENT);
@@ -75,7 +77,9 @@ class BagFile {
   }
 
  private:
-  void run(const std::string& sql) { EXPECT_EQ(sqlite3_exec(database_, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK); }
+  void run(const std::string& sql) {
+    EXPECT_EQ(sqlite3_exec(database_, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
+  }
 
   sqlite3* database_ = nullptr;
   std::map<std::string, std::size_t> topics_;

@@ -14,13 +14,15 @@ namespace {
 
 std::string flaser(const std::string& ranges, const std::string& laser, const std::string& robot, double t) {
   const auto beams = std::count(ranges.begin(), ranges.end(), ' ') + 1;
-  return "FLASER " + std::to_string(beams) + " " + ranges + " " + laser + " " + robot + " " + std::to_string(t) + " host 9\n";
+  return "FLASER " + std::to_string(beams) + " " + ranges + " " + laser + " " + robot + " " + std::to_string(t) +
+         " host 9\n";
 }
 
 const LaserScan& scan_at(const SensorLog& log, std::size_t item) { return std::get<LaserScan>(log.items.at(item)); }
 
 TEST(CarmenLog, GivesThePoseOfAScanAsOdometryJustBeforeIt) {
-  const auto log = read_carmen("ODOM 1 2 0.5 0.3 0.1 0 10.5 host 1\n" + flaser("1 2 3 4", "1.1 2 0.5", "1 2 0.5", 11.25));
+  const auto log =
+      read_carmen("ODOM 1 2 0.5 0.3 0.1 0 10.5 host 1\n" + flaser("1 2 3 4", "1.1 2 0.5", "1 2 0.5", 11.25));
   ASSERT_THAT(log, test::IsOk());
   ASSERT_EQ(log->items.size(), 3u);
   const auto& first = std::get<Odometry>(log->items[0]);
@@ -106,8 +108,9 @@ TEST(CarmenLog, ReadsRobotlaserWithItsOwnAngles) {
 }
 
 TEST(CarmenLog, CountsLinesThatAreDamagedAndGoesOn) {
-  const auto log = read_carmen("FLASER 4 1 2\nFLASER 1000000000 1\nODOM 1 2 x 0 0 0 1 h 1\nODOM nan 0 0 0 0 0 1 h 1\n"
-                               "ODOM 1 2 3 0 0 0 1 h 1\nTRUEPOS 1 2 3\n\n  \nFLASER\n");
+  const auto log = read_carmen(
+      "FLASER 4 1 2\nFLASER 1000000000 1\nODOM 1 2 x 0 0 0 1 h 1\nODOM nan 0 0 0 0 0 1 h 1\n"
+      "ODOM 1 2 3 0 0 0 1 h 1\nTRUEPOS 1 2 3\n\n  \nFLASER\n");
   ASSERT_THAT(log, test::IsOk());
   EXPECT_EQ(log->items.size(), 1u);
   EXPECT_EQ(log->dropped.at("damaged FLASER"), 3u);

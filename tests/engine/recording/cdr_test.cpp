@@ -16,7 +16,7 @@ TEST(Cdr, AlignsEveryNumberToItsOwnSizeBehindTheHeader) {
   writer.number(std::uint32_t{2});
   writer.string("ab");
   writer.number(3.0);
-  const std::vector<std::uint8_t> expected{0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3, 0,
+  const std::vector<std::uint8_t> expected{0, 1, 0,   0,   1, 0, 0, 0, 2, 0, 0, 0, 3, 0,
                                            0, 0, 'a', 'b', 0, 0, 0, 0, 0, 0, 0, 0, 8, 0x40};
   EXPECT_EQ(writer.bytes(), expected);
   CdrReader reader(writer.bytes());
@@ -46,9 +46,9 @@ TEST(Cdr, KeepsItsFirstFaultAndReadsZeroFromThenOn) {
 }
 
 TEST(Cdr, RefusesStringsThatDoNotEnd) {
-  for (const std::vector<std::uint8_t>& body : {std::vector<std::uint8_t>{0, 1, 0, 0, 2, 0, 0, 0, 'a', 'b'},
-                                                std::vector<std::uint8_t>{0, 1, 0, 0, 0, 0, 0, 0},
-                                                std::vector<std::uint8_t>{0, 1, 0, 0, 9, 0, 0, 0, 'a', 0}}) {
+  for (const std::vector<std::uint8_t>& body :
+       {std::vector<std::uint8_t>{0, 1, 0, 0, 2, 0, 0, 0, 'a', 'b'}, std::vector<std::uint8_t>{0, 1, 0, 0, 0, 0, 0, 0},
+        std::vector<std::uint8_t>{0, 1, 0, 0, 9, 0, 0, 0, 'a', 0}}) {
     CdrReader reader(body);
     reader.string();
     EXPECT_FALSE(reader.ok());
@@ -78,8 +78,10 @@ TEST(RosMessages, AreNothingAtEveryLengthShortOfWhole) {
   const auto transform_bytes = encode_transforms(std::array{transform, transform});
   for (std::size_t n = 0; n < scan_bytes.size(); ++n) EXPECT_FALSE(decode_scan({scan_bytes.data(), n})) << n;
   // The last covariance is not read: what is cut there is still a whole message to us.
-  for (std::size_t n = 0; n < odometry_bytes.size() - 36 * 8; ++n) EXPECT_FALSE(decode_odometry({odometry_bytes.data(), n})) << n;
-  for (std::size_t n = 0; n < transform_bytes.size(); ++n) EXPECT_FALSE(decode_transforms({transform_bytes.data(), n})) << n;
+  for (std::size_t n = 0; n < odometry_bytes.size() - 36 * 8; ++n)
+    EXPECT_FALSE(decode_odometry({odometry_bytes.data(), n})) << n;
+  for (std::size_t n = 0; n < transform_bytes.size(); ++n)
+    EXPECT_FALSE(decode_transforms({transform_bytes.data(), n})) << n;
   EXPECT_TRUE(decode_scan(scan_bytes) && decode_odometry(odometry_bytes) && decode_transforms(transform_bytes));
 }
 

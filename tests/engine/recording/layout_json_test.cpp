@@ -66,7 +66,8 @@ TEST_P(LayoutRoundTrip, KeepsEverything) {
 INSTANTIATE_TEST_SUITE_P(Seeds, LayoutRoundTrip, testing::Range<std::uint64_t>(1, 6));
 
 TEST(LayoutJson, JoinsTheEndsOfWallsThatTouchWhereCornersAreNotGiven) {
-  const auto read = layout_from_json(R"({"size": [100, 80], "walls": [[0,0,50,0,3], [50.5,0.5,50,40], [50,41,0,0.2,2], [9,9,9.5,9]]})");
+  const auto read = layout_from_json(
+      R"({"size": [100, 80], "walls": [[0,0,50,0,3], [50.5,0.5,50,40], [50,41,0,0.2,2], [9,9,9.5,9]]})");
   ASSERT_THAT(read, test::IsOk());
   EXPECT_EQ(read->layout.walls.size(), 3u) << "what is shorter than a corner is no wall";
   EXPECT_EQ(read->layout.corners[0].degree, 2);
@@ -81,7 +82,8 @@ TEST(LayoutJson, NamesTheFieldThatIsWrong) {
   };
   EXPECT_EQ(complaint(""), "fine");
   EXPECT_THAT(complaint(R"(, "wall_corners": [[0, 1]])"), testing::HasSubstr("wall_corners names a corner"));
-  EXPECT_THAT(complaint(R"(, "corners": [[1,1],[2,2]], "wall_corners": [[0, 0.5]])"), testing::HasSubstr("wall_corners"));
+  EXPECT_THAT(complaint(R"(, "corners": [[1,1],[2,2]], "wall_corners": [[0, 0.5]])"),
+              testing::HasSubstr("wall_corners"));
   EXPECT_THAT(complaint(R"(, "corners": [[1,1],[2,2]], "wall_corners": [[1, 1]])"), testing::HasSubstr("to itself"));
   EXPECT_THAT(complaint(R"(, "doors": [[1,2,3]])"), testing::HasSubstr("doors"));
   EXPECT_THAT(complaint(R"(, "metres_per_pixel": -1)"), testing::HasSubstr("metres_per_pixel"));

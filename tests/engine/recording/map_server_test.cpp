@@ -53,13 +53,15 @@ TEST(MapServer, ReadsWhatOtherToolsWrite) {
   const cv::Mat image = (cv::Mat_<std::uint8_t>(1, 4) << 0, 100, 205, 254);
   cv::imwrite((folder / "m.png").string(), image);
   const auto map_with = [&](const std::string& more) {
-    std::ofstream(folder / "m.yaml") << "# map\nimage: \"m.png\"\nresolution: 0.03  # m\norigin: [-1.5, 2, 0.0]\n" << more;
+    std::ofstream(folder / "m.yaml") << "# map\nimage: \"m.png\"\nresolution: 0.03  # m\norigin: [-1.5, 2, 0.0]\n"
+                                     << more;
     auto map = read_map(folder / "m.yaml");
     EXPECT_THAT(map, test::IsOk());
     return map ? map->cells() : std::vector<std::int8_t>();
   };
   EXPECT_THAT(map_with("negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"), testing::ElementsAre(100, -1, -1, 0));
-  EXPECT_THAT(map_with("negate: 1\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"), testing::ElementsAre(0, -1, 100, 100));
+  EXPECT_THAT(map_with("negate: 1\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"),
+              testing::ElementsAre(0, -1, 100, 100));
   EXPECT_THAT(map_with("mode: raw\n"), testing::ElementsAre(0, 100, -1, -1));
   EXPECT_THAT(map_with("mode: scale\noccupied_thresh: 0.65\nfree_thresh: 0.1\n"), testing::ElementsAre(100, 91, 18, 0));
 }

@@ -28,7 +28,8 @@ SensorLog random_log(std::uint64_t seed, int items) {
   SensorLog log;
   for (int i = 0; i < items; ++i) {
     const std::string robot = uniform_index(random, 2) == 0 ? "robot" : "fox";
-    const Stamp stamp = 1'700'000'000'000'000'000 + i * 10'000'000 - static_cast<Stamp>(uniform_index(random, 30'000'000));
+    const Stamp stamp =
+        1'700'000'000'000'000'000 + i * 10'000'000 - static_cast<Stamp>(uniform_index(random, 30'000'000));
     const Pose2 mount = robot == "fox" ? Pose2(0.25, 0, 0.5) : Pose2(-0.5, 0.125, 1);
     const std::uint64_t kind = uniform_index(random, 3);
     if (kind == 0) {
@@ -37,7 +38,8 @@ SensorLog random_log(std::uint64_t seed, int items) {
       scan.intensities.assign(200, 7);
       log.items.emplace_back(scan);
     } else if (kind == 1) {
-      log.items.emplace_back(Odometry{stamp, robot, Pose2(uniform(random, -9, 9), 1, uniform(random, -3, 3)), 0.5, -0.25});
+      log.items.emplace_back(
+          Odometry{stamp, robot, Pose2(uniform(random, -9, 9), 1, uniform(random, -3, 3)), 0.5, -0.25});
     } else {
       RadarSweep sweep{stamp, 0.5, robot, 0, 0.125f, 0.5, 0.0625, 16, 50, {}, mount};
       for (int bin = 0; bin < 16 * 50; ++bin) sweep.power.push_back(static_cast<float>(exponential(random)));
@@ -66,17 +68,22 @@ void expect_same(const LogItem& sent, const LogItem& got) {
   ASSERT_EQ(sent.index(), got.index());
   if (const auto* a = std::get_if<LaserScan>(&sent)) {
     const auto& b = std::get<LaserScan>(got);
-    EXPECT_EQ(std::tie(b.stamp, b.robot, b.ranges_m, b.intensities, b.angle_min_rad, b.angle_increment_rad, b.range_max_m),
-              std::tie(a->stamp, a->robot, a->ranges_m, a->intensities, a->angle_min_rad, a->angle_increment_rad, a->range_max_m));
+    EXPECT_EQ(
+        std::tie(b.stamp, b.robot, b.ranges_m, b.intensities, b.angle_min_rad, b.angle_increment_rad, b.range_max_m),
+        std::tie(a->stamp, a->robot, a->ranges_m, a->intensities, a->angle_min_rad, a->angle_increment_rad,
+                 a->range_max_m));
     EXPECT_THAT(b.T_robot_laser, test::IsNear(a->T_robot_laser, 1e-12, 1e-12));
   } else if (const auto* o = std::get_if<Odometry>(&sent)) {
     const auto& p = std::get<Odometry>(got);
-    EXPECT_EQ(std::tie(p.stamp, p.robot, p.speed_mps, p.turn_rate_radps), std::tie(o->stamp, o->robot, o->speed_mps, o->turn_rate_radps));
+    EXPECT_EQ(std::tie(p.stamp, p.robot, p.speed_mps, p.turn_rate_radps),
+              std::tie(o->stamp, o->robot, o->speed_mps, o->turn_rate_radps));
     EXPECT_THAT(p.T_odom_robot, test::IsNear(o->T_odom_robot, 1e-12, 1e-12));
   } else if (const auto* r = std::get_if<RadarSweep>(&sent)) {
     const auto& s = std::get<RadarSweep>(got);
-    EXPECT_EQ(std::tie(s.stamp, s.robot, s.power, s.azimuths, s.bins, s.range_min_m, s.range_resolution_m, s.azimuth_increment_rad),
-              std::tie(r->stamp, r->robot, r->power, r->azimuths, r->bins, r->range_min_m, r->range_resolution_m, r->azimuth_increment_rad));
+    EXPECT_EQ(std::tie(s.stamp, s.robot, s.power, s.azimuths, s.bins, s.range_min_m, s.range_resolution_m,
+                       s.azimuth_increment_rad),
+              std::tie(r->stamp, r->robot, r->power, r->azimuths, r->bins, r->range_min_m, r->range_resolution_m,
+                       r->azimuth_increment_rad));
     EXPECT_NEAR(s.duration_s, r->duration_s, 1e-6);
     EXPECT_THAT(s.T_robot_radar, test::IsNear(r->T_robot_radar, 1e-12, 1e-12));
   }
@@ -142,7 +149,8 @@ McapFile scan_records(int scans) {
   put_record(records, McapOp::kChannel, channel);
   for (int i = 0; i < scans; ++i) {
     McapFile message;
-    put(message, std::uint16_t{9}), put(message, std::uint32_t{0}), put(message, std::uint64_t{5}), put(message, std::uint64_t{5});
+    put(message, std::uint16_t{9}), put(message, std::uint32_t{0}), put(message, std::uint64_t{5}),
+        put(message, std::uint64_t{5});
     const auto cdr = encode_scan({i, "", 0, 0.1, 0, 0, 10, {1, 2, 3}, {}, {}}, "laser");
     message.insert(message.end(), cdr.begin(), cdr.end());
     put_record(records, McapOp::kMessage, message);
@@ -150,7 +158,8 @@ McapFile scan_records(int scans) {
   return records;
 }
 
-McapFile chunk(const McapFile& plain, const std::string& compression, const McapFile& packed, std::uint64_t claimed_size) {
+McapFile chunk(const McapFile& plain, const std::string& compression, const McapFile& packed,
+               std::uint64_t claimed_size) {
   McapFile body, file(kMcapMagic.begin(), kMcapMagic.end());
   put(body, std::uint64_t{0}), put(body, std::uint64_t{9}), put(body, claimed_size);
   put(body, static_cast<std::uint32_t>(crc32(0, plain.data(), static_cast<uInt>(plain.size()))));
@@ -168,7 +177,8 @@ TEST(Mcap, ReadsPlainAndLz4ChunksAndMessagesOutsideOfChunks) {
   packed.resize(LZ4F_compressFrame(packed.data(), packed.size(), plain.data(), plain.size(), nullptr));
   McapFile loose(kMcapMagic.begin(), kMcapMagic.end());
   loose.insert(loose.end(), plain.begin(), plain.end());
-  for (const McapFile& file : {chunk(plain, "", plain, plain.size()), chunk(plain, "lz4", packed, plain.size()), loose}) {
+  for (const McapFile& file :
+       {chunk(plain, "", plain, plain.size()), chunk(plain, "lz4", packed, plain.size()), loose}) {
     const auto read = read_back(file);
     ASSERT_THAT(read, test::IsOk());
     EXPECT_EQ(read->scans(), 20u);
@@ -177,7 +187,8 @@ TEST(Mcap, ReadsPlainAndLz4ChunksAndMessagesOutsideOfChunks) {
 
 TEST(Mcap, BelievesNoLengthItCannotSee) {
   const McapFile plain = scan_records(3);
-  for (const std::uint64_t claimed : {std::uint64_t{1} << 62, std::uint64_t{900'000'000}, std::uint64_t{plain.size() - 1}}) {
+  for (const std::uint64_t claimed :
+       {std::uint64_t{1} << 62, std::uint64_t{900'000'000}, std::uint64_t{plain.size() - 1}}) {
     const auto read = read_back(chunk(plain, "zstd", {0x28, 0xB5, 0x2F, 0xFD, 0}, claimed));
     ASSERT_THAT(read, test::IsOk());
     EXPECT_EQ(read->items.size(), 0u);

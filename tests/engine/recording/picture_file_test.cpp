@@ -68,11 +68,14 @@ TEST_P(PictureOf, NeverHarmsUsWhenItIsDamaged) {
   std::mt19937_64 random(11);
   for (int i = 0; i < 25; ++i) {
     FileBytes bytes = whole;
-    for (int wound = 0; wound < 3; ++wound) bytes[uniform_index(random, bytes.size())] = static_cast<std::uint8_t>(random());
+    for (int wound = 0; wound < 3; ++wound)
+      bytes[uniform_index(random, bytes.size())] = static_cast<std::uint8_t>(random());
     if (i % 3 == 0) bytes.resize(uniform_index(random, bytes.size()));
     const auto picture = decode_picture(bytes);
-    if (picture.ok()) EXPECT_EQ(picture->type(), CV_8UC3);
-    else EXPECT_FALSE(picture.error().message.empty());
+    if (picture.ok())
+      EXPECT_EQ(picture->type(), CV_8UC3);
+    else
+      EXPECT_FALSE(picture.error().message.empty());
   }
 }
 
@@ -98,8 +101,8 @@ TEST(PictureFile, TakesGrayAndSixteenBitAndLaysTransparencyOnWhite) {
 /// A JPEG with an EXIF segment that asks for a turn.
 FileBytes turned_jpeg(std::uint8_t orientation) {
   const FileBytes plain = encoded(".jpg", flag());
-  const FileBytes exif{0xFF, 0xE1, 0, 34, 'E', 'x', 'i', 'f', 0, 0, 'M', 'M', 0, 42, 0, 0, 0, 8,
-                       0,    1,    1, 18, 0,   3,   0,   0,   0, 1, 0, orientation, 0, 0, 0, 0, 0, 0};
+  const FileBytes exif{0xFF, 0xE1, 0, 34, 'E', 'x', 'i', 'f', 0, 0, 'M', 'M',         0, 42, 0, 0, 0, 8,
+                       0,    1,    1, 18, 0,   3,   0,   0,   0, 1, 0,   orientation, 0, 0,  0, 0, 0, 0};
   FileBytes bytes(plain.begin(), plain.begin() + 2);
   bytes.insert(bytes.end(), exif.begin(), exif.end());
   bytes.insert(bytes.end(), plain.begin() + 2, plain.end());
@@ -143,7 +146,8 @@ TEST(PictureFile, DrawsAPageOfAPdfAtTheAskedResolution) {
 }
 
 TEST(PictureFile, TakesNothingElse) {
-  for (const std::string& text : {std::string("GIF89a......"), std::string("<svg/>"), std::string("BM6"), std::string()})
+  for (const std::string& text :
+       {std::string("GIF89a......"), std::string("<svg/>"), std::string("BM6"), std::string()})
     EXPECT_THAT(read_picture_header(FileBytes(text.begin(), text.end())), test::Fails(Errc::kUnsupported)) << text;
   EXPECT_THAT(decode_picture(encoded(".png", flag()), {}, 3), test::Fails(Errc::kNotFound));
 }

@@ -36,14 +36,17 @@ Odometry some_odometry(Stamp stamp, double x) {
   return odometry;
 }
 
-RosTransform fixed(const std::string& parent, const std::string& child, const Eigen::Vector3d& at, double roll = 0, double yaw = 0) {
+RosTransform fixed(const std::string& parent, const std::string& child, const Eigen::Vector3d& at, double roll = 0,
+                   double yaw = 0) {
   return {0, parent, child, at,
-          Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * Eigen::Quaterniond(Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))};
+          Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+              Eigen::Quaterniond(Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))};
 }
 
 /// Laser on a plate on the robot: two links, as real robots have it.
 std::vector<std::uint8_t> mounts(double roll = 0) {
-  return encode_transforms(std::vector{fixed("base_link", "plate", {0.1, 0, 0.2}), fixed("plate", "laser", {0.05, 0, 0}, roll, kPi / 2)});
+  return encode_transforms(
+      std::vector{fixed("base_link", "plate", {0.1, 0, 0.2}), fixed("plate", "laser", {0.05, 0, 0}, roll, kPi / 2)});
 }
 
 const LaserScan* first_scan(const SensorLog& log) {
@@ -112,7 +115,8 @@ TEST(SensorLog, TakesOdometryFromTransformsWhereThereIsNoTopic) {
   const test::ScratchFolder folder;
   {
     test::BagFile bag(folder / "run.db3");
-    bag.write("/tf", kTransformsType, 1, encode_transforms(std::vector{fixed("odom", "base_link", {3, 4, 0}, 0, 0.25)}));
+    bag.write("/tf", kTransformsType, 1,
+              encode_transforms(std::vector{fixed("odom", "base_link", {3, 4, 0}, 0, 0.25)}));
     bag.write("/scan", kLaserScanType, 2, encode_scan(some_scan(100), "laser"));
   }
   const auto log = read_log(folder / "run.db3");
@@ -126,7 +130,8 @@ TEST(SensorLog, KeepsTwoRobotsApartAndChoosesOneLaserForEach) {
   {
     test::BagFile bag(folder / "run.db3");
     for (const std::string robot : {"/r1", "/r2"}) {
-      bag.write(robot + "/odom", kOdometryType, 1, encode_odometry(some_odometry(1, robot == "/r1" ? 1 : 2), "odom", "base_link"));
+      bag.write(robot + "/odom", kOdometryType, 1,
+                encode_odometry(some_odometry(1, robot == "/r1" ? 1 : 2), "odom", "base_link"));
       bag.write(robot + "/lidar/scan", kLaserScanType, 2, encode_scan(some_scan(2), "laser"));
       bag.write(robot + "/lidar/filtered", kLaserScanType, 3, encode_scan(some_scan(3), "laser"));
       bag.write(robot + "/lidar/filtered", kLaserScanType, 4, encode_scan(some_scan(4), "laser"));
@@ -180,8 +185,7 @@ TEST(SensorLog, ReadsAFolderOfSplitBagsInTheOrderOfTheirNumbers) {
   const auto log = read_log(folder.path());
   ASSERT_THAT(log, test::IsOk());
   ASSERT_EQ(log->items.size(), 3u);
-  for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_EQ(std::get<LaserScan>(log->items[i]).stamp, (std::array{0, 2, 10}[i]));
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(std::get<LaserScan>(log->items[i]).stamp, (std::array{0, 2, 10}[i]));
 }
 
 TEST(SensorLog, ReadsCarmenPlainAndPacked) {

@@ -55,10 +55,11 @@ RadarSweep wire_sweep(Stamp stamp) {
 struct Listening {
   explicit Listening(GatewayParams params = {}) {
     params.domain = test::ros_domain();
-    auto opened = RobotGateway::open(params,
-                                     {[this](const LaserScan& s) { scans.put(s); }, [this](const Odometry& o) { odometry.put(o); },
-                                      [this](const RadarSweep& s) { sweeps.put(s); }, [this](const GatewayAlarm& a) { alarms.put(a); }},
-                                     std::make_shared<SystemClock>());
+    auto opened = RobotGateway::open(
+        params,
+        {[this](const LaserScan& s) { scans.put(s); }, [this](const Odometry& o) { odometry.put(o); },
+         [this](const RadarSweep& s) { sweeps.put(s); }, [this](const GatewayAlarm& a) { alarms.put(a); }},
+        std::make_shared<SystemClock>());
     EXPECT_THAT(opened, test::IsOk());
     gateway = std::move(*opened);
   }
@@ -82,7 +83,9 @@ struct SentTwist {
 struct SimulatedRobot {
   explicit SimulatedRobot(RosRobotParams params = {}) {
     params.domain = test::ros_domain();
-    auto opened = RosRobotNode::open(params, {[this](double v, double w) { velocities.put({v, w}); },
+    auto opened = RosRobotNode::open(params, {[this](double v, double w) {
+                                                velocities.put({v, w});
+                                              },
                                               [this](const Pose2& goal, const std::string&) { goals.put(goal); }});
     EXPECT_THAT(opened, test::IsOk());
     node = std::move(*opened);
@@ -151,7 +154,8 @@ TEST_P(VelocityKind, IsChosenByWhatTheRobotTakes) {
   EXPECT_THAT(here.gateway->drive("robot", 1, 0), test::Fails(Errc::kNotFound));
   SimulatedRobot robot(params);
   ASSERT_TRUE(eventually([&] { return here.link("robot").takes_velocity; }));
-  ASSERT_TRUE(robot.velocities.wait_poking([&] { EXPECT_THAT(here.gateway->drive("robot", 0.5, -0.75), test::IsOk()); }));
+  ASSERT_TRUE(
+      robot.velocities.wait_poking([&] { EXPECT_THAT(here.gateway->drive("robot", 0.5, -0.75), test::IsOk()); }));
   EXPECT_EQ(robot.velocities.all()[0], (SentTwist{0.5, -0.75}));
   EXPECT_THAT(here.gateway->drive("robot", std::nan(""), 0), test::Fails(Errc::kInvalidArgument));
 }
@@ -283,7 +287,8 @@ TEST(RobotGateway, DropsMessagesThatAreNoScanAndGoesOn) {
   SimulatedRobot robot;
   Forger forger;
   const std::array<std::uint32_t, 12> endless_name{1, 2, 0x7FFFFFFF}, unended_name{1, 2, 4, 0x41414141},
-      endless_ranges{1, 2, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0xFFFFFFFF}, random_words{7, 7, 6, 0x6573616C, 0x72, 9, 9, 9, 9, 9, 9, 3};
+      endless_ranges{1, 2, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0xFFFFFFFF},
+      random_words{7, 7, 6, 0x6573616C, 0x72, 9, 9, 9, 9, 9, 9, 3};
   ASSERT_TRUE(here.scans.wait_poking([&] {
     for (const auto& words : {endless_name, unended_name, endless_ranges, random_words}) forger.write(words);
     robot.node->publish(wire_scan(2));

@@ -8,7 +8,8 @@ namespace smokemap {
 namespace {
 
 Eigen::Quaterniond turned(double yaw, double roll = 0) {
-  return Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * Eigen::Quaterniond(Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()));
+  return Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+         Eigen::Quaterniond(Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()));
 }
 
 LaserScan plain_scan(Stamp stamp) { return {stamp, "", -1, 0.5, 0, 0, 10, {1, 2, 3}, {}, {}}; }
@@ -19,7 +20,8 @@ class Intake : public testing::Test {
   std::vector<std::string> alarms;
   GatewayParams params;
   RobotGateway::Callbacks callbacks{[this](const LaserScan& scan) { scans.push_back(scan); }, {}, {}, {}};
-  RobotIntake intake{"fox", params, callbacks, [this](const std::string& id, const std::string&) { alarms.push_back(id); }};
+  RobotIntake intake{"fox", params, callbacks,
+                     [this](const std::string& id, const std::string&) { alarms.push_back(id); }};
   static constexpr Stamp kNow = 1'000'000'000;
 };
 

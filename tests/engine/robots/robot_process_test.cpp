@@ -16,8 +16,8 @@
 #include "tests/support/result_matchers.hpp"
 #include "tests/support/ros_domain.hpp"
 
-// The wire itself: a robot in a process of its own, reached over loopback UDP. The robot's program is this one, told by its
-// environment to be the robot.
+// The wire itself: a robot in a process of its own, reached over loopback UDP. The robot's program is this one, told by
+// its environment to be the robot.
 
 namespace smokemap {
 namespace {
@@ -34,7 +34,8 @@ RadarSweep process_sweep() {
   return sweep;
 }
 
-/// The robot's side: says what it measures until its input ends, and tells back in its odometry how fast it was told to go.
+/// The robot's side: says what it measures until its input ends, and tells back in its odometry how fast it was told to
+/// go.
 TEST(RobotProcess, DISABLED_IsTheRobot) {
   std::atomic<double> speed_mps = 0;
   RosRobotParams params;
@@ -91,8 +92,10 @@ struct Ground {
     GatewayParams params;
     params.domain = test::ros_domain();
     auto opened = RobotGateway::open(params,
-                                     {[this](const LaserScan& s) { scans.put(s); }, [this](const Odometry& o) { odometry.put(o); },
-                                      [this](const RadarSweep& s) { sweeps.put(s); }, {}},
+                                     {[this](const LaserScan& s) { scans.put(s); },
+                                      [this](const Odometry& o) { odometry.put(o); },
+                                      [this](const RadarSweep& s) { sweeps.put(s); },
+                                      {}},
                                      clock);
     EXPECT_THAT(opened, test::IsOk());
     gateway = std::move(*opened);
@@ -128,7 +131,8 @@ TEST(RobotInItsOwnProcess, AgesWhenItCrashesAndIsHeardAgainWhenItIsBack) {
   {
     RobotProcess robot;
     ASSERT_TRUE(ground.scans.wait_for(1));
-    ASSERT_TRUE(test::eventually([&] { return ground.link().scans > 0 && ground.link().link == LinkFreshness::kFresh; }));
+    ASSERT_TRUE(
+        test::eventually([&] { return ground.link().scans > 0 && ground.link().link == LinkFreshness::kFresh; }));
     robot.crash();
   }
   ASSERT_TRUE(test::eventually([&] {  // what was on its way may still arrive

@@ -42,8 +42,15 @@ TEST(TopicTable, MakesARobotOfEveryNamespaceWithAScan) {
   EXPECT_EQ(robots[0].scan, "rt/blue/laser/scan");
   EXPECT_THAT(robots[0].fixed_transforms, testing::ElementsAre("rt/tf_static"));
   EXPECT_EQ(robots[0].odometry, "");
-  const RobotTopics red{"red", "rt/red/scan", "rt/red/odom", "rt/red/radar", "", {"rt/red/tf_static", "rt/tf_static"},
-                        "rt/red/cmd_vel", "rt/red/goal_pose", false};
+  const RobotTopics red{"red",
+                        "rt/red/scan",
+                        "rt/red/odom",
+                        "rt/red/radar",
+                        "",
+                        {"rt/red/tf_static", "rt/tf_static"},
+                        "rt/red/cmd_vel",
+                        "rt/red/goal_pose",
+                        false};
   EXPECT_EQ(robots[1], red);
 }
 
@@ -106,8 +113,8 @@ TEST(RosNames, GoThereAndBack) {
   EXPECT_EQ(parse_dds_topic("rt/scan")->robot, "robot");
   EXPECT_EQ(parse_dds_topic("rt/fox/front/scan")->robot, "fox");
   EXPECT_EQ(parse_dds_topic("rt/fox/front/scan")->last_word, "scan");
-  for (const char* other : {"rq/fox/goRequest", "rr/fox/goReply", "ros_discovery_info", "rt/", "rt//scan", "rt/fox/", "",
-                            "rt/navigate/_action/status"})
+  for (const char* other : {"rq/fox/goRequest", "rr/fox/goReply", "ros_discovery_info", "rt/", "rt//scan", "rt/fox/",
+                            "", "rt/navigate/_action/status"})
     EXPECT_FALSE(parse_dds_topic(other)) << other;
 }
 
@@ -121,7 +128,8 @@ TEST(LinkFreshness, AgesFromFreshOverStaleToLost) {
   EXPECT_EQ(link_state(0, from_seconds(0.99), params), LinkFreshness::kFresh);
   EXPECT_EQ(link_state(0, from_seconds(1.01), params), LinkFreshness::kStale);
   EXPECT_EQ(link_state(0, from_seconds(5.01), params), LinkFreshness::kLost);
-  EXPECT_EQ(link_state(from_seconds(10), from_seconds(9), params), LinkFreshness::kFresh) << "a clock that stepped back";
+  EXPECT_EQ(link_state(from_seconds(10), from_seconds(9), params), LinkFreshness::kFresh)
+      << "a clock that stepped back";
   EXPECT_STREQ(to_string(LinkFreshness::kStale), "stale");
 }
 

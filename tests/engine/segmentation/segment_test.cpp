@@ -33,7 +33,8 @@ double agreement(const cv::Mat& one, const cv::Mat& two) {
   int total = 0, agreeing = 0;
   for (int y = 0; y < one.rows; ++y)
     for (int x = 0; x < one.cols; ++x)
-      if (const int label = one.at<unsigned short>(y, x); label != 0) ++counts[label][two.at<unsigned short>(y, x)], ++total;
+      if (const int label = one.at<unsigned short>(y, x); label != 0)
+        ++counts[label][two.at<unsigned short>(y, x)], ++total;
   for (const auto& [label, votes] : counts) {
     int most = 0;
     for (const auto& [other, count] : votes) most = std::max(most, count);
@@ -49,7 +50,9 @@ void expect_partition(const cv::Mat& free_space, const Segmentation& result) {
     const Region& region = result.regions[i];
     EXPECT_EQ(region.label, static_cast<int>(i) + 1);
     EXPECT_EQ(region.area_px, cv::countNonZero(result.labels == region.label));
-    EXPECT_EQ(result.labels.at<unsigned short>(static_cast<int>(region.anchor_px.y()), static_cast<int>(region.anchor_px.x())), region.label);
+    EXPECT_EQ(result.labels.at<unsigned short>(static_cast<int>(region.anchor_px.y()),
+                                               static_cast<int>(region.anchor_px.x())),
+              region.label);
     if (i > 0) {
       EXPECT_LE(region.area_px, result.regions[i - 1].area_px);
     }

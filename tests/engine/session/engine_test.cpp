@@ -40,7 +40,8 @@ class Watcher {
 LayoutMap two_corner_plan() {
   LayoutMap layout;
   layout.width_px = layout.height_px = 300;
-  for (const Point2& p : {Point2(20, 20), Point2(280, 20), Point2(280, 280), Point2(20, 280)}) layout.corners.push_back({p, 2, 1});
+  for (const Point2& p : {Point2(20, 20), Point2(280, 20), Point2(280, 280), Point2(20, 280)})
+    layout.corners.push_back({p, 2, 1});
   for (int i = 0; i < 4; ++i) layout.walls.push_back({i, (i + 1) % 4, 4, 1, false});
   layout.scale = LayoutScale{0.05, 0.02, true};
   return layout;
@@ -83,7 +84,8 @@ TEST(Engine, HostileSensorDataStopNothing) {
   odometry.robot = "robot1";
   odometry.T_odom_robot = Pose2(std::nan(""), 0, 0);
   engine.add_odometry(odometry);
-  EXPECT_TRUE(watcher.sees([](const Snapshot& s) { return s.robots.size() == 1; })) << "it is there, and known not to know where";
+  EXPECT_TRUE(watcher.sees([](const Snapshot& s) { return s.robots.size() == 1; }))
+      << "it is there, and known not to know where";
   EXPECT_FALSE(engine.snapshot()->robots.front().localized);
 }
 

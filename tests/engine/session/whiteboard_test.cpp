@@ -202,7 +202,8 @@ TEST(SessionCore, AGoalOutsideOfEverythingKnownIsRefusedWithTheReason) {
   ASSERT_THAT(scene.core.apply(goal_at("g", {30, 2}), Origin::kLive), test::IsOk());
   for (int i = 0; i < 300 && !is_final(scene.state()); ++i) scene.step();
   EXPECT_EQ(scene.state(), GoalState::kRefused);
-  EXPECT_EQ(scene.core.snapshot(scene.now).goals.front().goal.reason, "the place is neither on the plan nor seen by a robot");
+  EXPECT_EQ(scene.core.snapshot(scene.now).goals.front().goal.reason,
+            "the place is neither on the plan nor seen by a robot");
 }
 
 TEST(SessionCore, TheEmergencyStopReachesTheRobotAtOnceAndHolds) {

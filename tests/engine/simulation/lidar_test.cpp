@@ -27,7 +27,8 @@ SegmentWorld hall() {
 }
 
 double share_of(const SimulatedScan& scan, BeamFate fate) {
-  return static_cast<double>(std::count(scan.fate.begin(), scan.fate.end(), fate)) / static_cast<double>(scan.fate.size());
+  return static_cast<double>(std::count(scan.fate.begin(), scan.fate.end(), fate)) /
+         static_cast<double>(scan.fate.size());
 }
 
 LidarParams exact_lidar() {
@@ -43,7 +44,8 @@ TEST(Lidar, MeasuresTrueRangesWithoutNoise) {
   const auto out = simulate_scan(world, {}, pose, pose, 0, exact_lidar(), random);
   ASSERT_THAT(check(out.scan), test::IsOk());
   for (std::size_t i = 0; i < out.scan.ranges_m.size(); ++i) {
-    const double angle = pose.heading() + out.scan.angle_min_rad + static_cast<double>(i) * out.scan.angle_increment_rad;
+    const double angle =
+        pose.heading() + out.scan.angle_min_rad + static_cast<double>(i) * out.scan.angle_increment_rad;
     const auto truth = cast_by_force(world, pose.translation(), Point2(std::cos(angle), std::sin(angle)), 100);
     ASSERT_TRUE(truth);
     EXPECT_NEAR(out.scan.ranges_m[i], truth->range_m, 1e-5);

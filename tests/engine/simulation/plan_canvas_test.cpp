@@ -82,8 +82,8 @@ TEST(PlanCanvas, WritesTextAboveItsBaseline) {
 }
 
 TEST(PlanSymbols, HaveTheColourTheyAreKnownBy) {
-  for (const PlanSymbol symbol : {PlanSymbol::kExit, PlanSymbol::kExtinguisher, PlanSymbol::kAlarm, PlanSymbol::kFirstAid,
-                                  PlanSymbol::kYouAreHere}) {
+  for (const PlanSymbol symbol : {PlanSymbol::kExit, PlanSymbol::kExtinguisher, PlanSymbol::kAlarm,
+                                  PlanSymbol::kFirstAid, PlanSymbol::kYouAreHere}) {
     PlanCanvas canvas(40, 40);
     draw_symbol(canvas, symbol, {20, 20}, 30);
     const cv::Vec3b edge = canvas.picture().at<cv::Vec3b>(20, 7);

@@ -116,7 +116,8 @@ TEST(PlanDistortion, DividesAndJoinsRoomsAsDrawn) {
   EXPECT_EQ(plan->drawn.rooms.size(), building.rooms.size() - 3 + 1);
   double before = 0, after = 0;
   for (std::size_t i = 0; i < building.rooms.size(); ++i) before += signed_area(building.outline(static_cast<int>(i)));
-  for (std::size_t i = 0; i < plan->drawn.rooms.size(); ++i) after += signed_area(plan->drawn.outline(static_cast<int>(i)));
+  for (std::size_t i = 0; i < plan->drawn.rooms.size(); ++i)
+    after += signed_area(plan->drawn.outline(static_cast<int>(i)));
   EXPECT_NEAR(after, before, 1e-6);
 }
 

@@ -24,7 +24,8 @@ DistortedPlan wrong_plan(std::uint64_t seed) {
 }
 
 int darkness_at(const cv::Mat& gray, const Point2& p_px) {
-  return 255 - gray.at<uchar>(cv::Point(static_cast<int>(std::lround(p_px.x())), static_cast<int>(std::lround(p_px.y()))));
+  return 255 -
+         gray.at<uchar>(cv::Point(static_cast<int>(std::lround(p_px.x())), static_cast<int>(std::lround(p_px.y()))));
 }
 
 TEST(PlanPicture, IsDarkOnWallsAndLightInRoomsAndDoors) {
@@ -121,7 +122,8 @@ TEST(PlanPicture, GivesAPerfectReadersLayout) {
   const TrueLayout truth = true_layout(plan, *picture);
   ASSERT_EQ(truth.corner_world.size(), truth.layout.corners.size());
   ASSERT_EQ(truth.wall_source.size(), truth.layout.walls.size());
-  EXPECT_EQ(truth.layout.walls.size(), plan.drawn.walls.size() + plan.drawn.doors.size()) << "a door cuts a wall in two";
+  EXPECT_EQ(truth.layout.walls.size(), plan.drawn.walls.size() + plan.drawn.doors.size())
+      << "a door cuts a wall in two";
   EXPECT_EQ(truth.layout.width_px, picture->sheet.cols);
   for (const LayoutWall& wall : truth.layout.walls) {
     EXPECT_NE(wall.corner_a, wall.corner_b);

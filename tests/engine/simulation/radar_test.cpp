@@ -20,7 +20,8 @@ double mean_power(const SegmentWorld& world, const RadarSimParams& params, int a
   for (int i = 0; i < sweeps; ++i) {
     auto random = random_stream(77, static_cast<std::uint64_t>(i));
     sum += simulate_sweep(world, {}, {}, 0, params, random)
-               .power[static_cast<std::size_t>(azimuth) * static_cast<std::size_t>(params.bins) + static_cast<std::size_t>(bin)];
+               .power[static_cast<std::size_t>(azimuth) * static_cast<std::size_t>(params.bins) +
+                      static_cast<std::size_t>(bin)];
   }
   return sum / sweeps;
 }
@@ -46,7 +47,7 @@ TEST(Radar, HasUnitNoiseWhereNothingIs) {
 TEST(Radar, ShowsABrickWallAtFiveMetresAtItsSignalToNoiseRatio) {
   const SegmentWorld world({{{{5, -20}, {5, 20}}, Material::kBrick}});
   RadarSimParams params = small_radar();
-  params.bin_m = 0.05;  // the wall at a bin's centre
+  params.bin_m = 0.05;                                          // the wall at a bin's centre
   const double power = mean_power(world, params, 4, 100, 400);  // azimuth 4 looks along +x
   EXPECT_NEAR(10 * std::log10(power), 25, 1.0);
 }

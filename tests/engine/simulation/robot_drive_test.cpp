@@ -138,7 +138,8 @@ TEST(RobotDrive, HasABiasOfItsOwn) {
     const double way = drill.drive.true_pose().x();
     bend_squares += std::pow(drill.drive.odometry_pose().heading() / way, 2) / 400;
     drill.go(0, 0, 1);
-    scale_squares += std::pow(drill.drive.odometry_pose().translation().norm() / drill.drive.true_pose().x() - 1, 2) / 400;
+    scale_squares +=
+        std::pow(drill.drive.odometry_pose().translation().norm() / drill.drive.true_pose().x() - 1, 2) / 400;
   }
   EXPECT_NEAR(std::sqrt(bend_squares), 0.01, 0.0015);
   EXPECT_NEAR(std::sqrt(scale_squares), 0.02, 0.003);

@@ -36,7 +36,8 @@ TEST(SegmentWorld, AgreesWithBruteForceOverAHundredThousandRays) {
   std::mt19937_64 random(1);
   const auto plan = random_building({}, random);
   ASSERT_TRUE(plan.ok());
-  const SegmentWorld worlds[] = {build_world(*plan), scattered_segments(600, 30, random), build_world(slanted_building())};
+  const SegmentWorld worlds[] = {build_world(*plan), scattered_segments(600, 30, random),
+                                 build_world(slanted_building())};
   for (int ray = 0; ray < 100'000; ++ray) {
     const SegmentWorld& world = worlds[ray % 3];
     const Point2 origin(uniform(random, -5, 35), uniform(random, -5, 25));
@@ -73,7 +74,8 @@ TEST(SegmentWorld, LetsNothingOutThroughTheCornersOfAClosedRoom) {
   std::mt19937_64 random(3);
   for (int turn = 0; turn < 40; ++turn) {  // rooms that share corners to the bit, turned by any angle
     const Pose2 T(uniform(random, -5, 5), uniform(random, -5, 5), uniform(random, -kPi, kPi));
-    const std::vector<Point2> ring{T * Point2(0, 0), T * Point2(4, 0), T * Point2(4, 3), T * Point2(2, 4), T * Point2(0, 3)};
+    const std::vector<Point2> ring{T * Point2(0, 0), T * Point2(4, 0), T * Point2(4, 3), T * Point2(2, 4),
+                                   T * Point2(0, 3)};
     std::vector<WorldSegment> segments;
     for (std::size_t i = 0; i < ring.size(); ++i) segments.push_back({{ring[i], ring[(i + 1) % ring.size()]}});
     const SegmentWorld world(segments);

@@ -17,10 +17,13 @@ namespace {
 class Digest {
  public:
   void add(const void* data, std::size_t size) {
-    for (std::size_t i = 0; i < size; ++i) value_ = (value_ ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3u;
+    for (std::size_t i = 0; i < size; ++i)
+      value_ = (value_ ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3u;
   }
   template <typename T>
-  void add(const T& number) { add(&number, sizeof number); }
+  void add(const T& number) {
+    add(&number, sizeof number);
+  }
   void add(const RobotOutput& out) {
     for (const LaserScan& scan : out.scans) {
       add(scan.stamp);
@@ -73,9 +76,7 @@ TEST(SimulatedRobot, SendsTheSameBytesInThreeRuns) {
   EXPECT_EQ(digest_of_a_run(1, 1, false), first);
 }
 
-TEST(SimulatedRobot, IsNotDisturbedByCompany) {
-  EXPECT_EQ(digest_of_a_run(1, 1, true), digest_of_a_run(1, 1, false));
-}
+TEST(SimulatedRobot, IsNotDisturbedByCompany) { EXPECT_EQ(digest_of_a_run(1, 1, true), digest_of_a_run(1, 1, false)); }
 
 TEST(SimulatedRobot, DiffersForAnotherSeedOrIndex) {
   EXPECT_NE(digest_of_a_run(2, 1, false), digest_of_a_run(1, 1, false));

@@ -25,7 +25,8 @@ Stroke wall(std::vector<Point2> points) {
 /// A line as a hand draws it: wobbling by up to two pixels.
 Stroke wobbly(std::mt19937_64& random, const Point2& a, const Point2& b) {
   std::vector<Point2> points;
-  for (int i = 0; i <= 20; ++i) points.push_back(a + (b - a) * i / 20 + Point2(uniform(random, -2, 2), uniform(random, -2, 2)));
+  for (int i = 0; i <= 20; ++i)
+    points.push_back(a + (b - a) * i / 20 + Point2(uniform(random, -2, 2), uniform(random, -2, 2)));
   return wall(points);
 }
 
@@ -35,7 +36,8 @@ SketchMap two_rooms(std::mt19937_64& random, double slip) {
     const Point2 a(x1, y1), b(x2, y2), u = (b - a).normalized();
     sketch.strokes.push_back(wobbly(random, a + slip * u, b - slip * u));
   };
-  line(100, 100, 700, 100), line(700, 100, 700, 500), line(700, 500, 100, 500), line(100, 500, 100, 100), line(400, 100, 400, 500);
+  line(100, 100, 700, 100), line(700, 100, 700, 500), line(700, 500, 100, 500), line(100, 500, 100, 100),
+      line(400, 100, 400, 500);
   return sketch;
 }
 
@@ -59,11 +61,15 @@ TEST(CleanSketch, ReportsTheGapsThatItClosed) {
   auto random = random_stream(2, 0);
   const auto clean = clean_sketch(two_rooms(random, 7));
   ASSERT_THAT(clean, IsOk());
-  EXPECT_GE(std::count_if(clean->gaps.begin(), clean->gaps.end(), [](const SketchGap& g) { return g.closed_by_us; }), 4);
+  EXPECT_GE(std::count_if(clean->gaps.begin(), clean->gaps.end(), [](const SketchGap& g) { return g.closed_by_us; }),
+            4);
 }
 
 TEST(CleanSketch, ALargerGapStaysOpenAndIsReported) {
-  SketchMap sketch{800, 600, {wall({Point2(380, 100), Point2(100, 100), Point2(100, 500), Point2(700, 500), Point2(700, 100), Point2(440, 100)})}};
+  SketchMap sketch{800,
+                   600,
+                   {wall({Point2(380, 100), Point2(100, 100), Point2(100, 500), Point2(700, 500), Point2(700, 100),
+                          Point2(440, 100)})}};
   const auto clean = clean_sketch(sketch);
   ASSERT_THAT(clean, IsOk());
   ASSERT_EQ(clean->gaps.size(), 1U);
@@ -82,7 +88,9 @@ TEST(CleanSketch, ADoorStrokeOpensTheWallItLiesOn) {
   const auto clean = clean_sketch(sketch);
   ASSERT_THAT(clean, IsOk());
   EXPECT_EQ(regions(clean->free_space), 1);
-  EXPECT_TRUE(std::any_of(clean->gaps.begin(), clean->gaps.end(), [](const SketchGap& g) { return !g.closed_by_us && (g.gap_px.midpoint() - Point2(400, 310)).norm() < 3; }));
+  EXPECT_TRUE(std::any_of(clean->gaps.begin(), clean->gaps.end(), [](const SketchGap& g) {
+    return !g.closed_by_us && (g.gap_px.midpoint() - Point2(400, 310)).norm() < 3;
+  }));
 }
 
 TEST(CleanSketch, ADoorStrokeAcrossAWallOpensIt) {
@@ -139,7 +147,8 @@ TEST(CleanSketch, FilledPixelsAreFreeOrNot) {
 
 TEST(CleanSketch, SaysNoToSketchesWithoutRooms) {
   EXPECT_THAT(clean_sketch(SketchMap{}), Fails(Errc::kDegenerate));
-  EXPECT_THAT(clean_sketch(SketchMap{800, 600, {wall({Point2(100, 100), Point2(500, 100)})}}), Fails(Errc::kDegenerate));
+  EXPECT_THAT(clean_sketch(SketchMap{800, 600, {wall({Point2(100, 100), Point2(500, 100)})}}),
+              Fails(Errc::kDegenerate));
   EXPECT_THAT(clean_sketch(SketchMap{800, 600, {wall({Point2(100, 100)})}}), Fails(Errc::kDegenerate));
   EXPECT_THAT(clean_sketch(SketchMap{0, 600, {wall({Point2(1, 1), Point2(2, 2)})}}), Fails(Errc::kInvalidArgument));
   EXPECT_THAT(clean_sketch(SketchMap{100000, 100000, {wall({Point2(1, 1), Point2(2, 2)})}}), Fails(Errc::kTooLarge));
@@ -156,7 +165,8 @@ TEST(CleanSketch, RandomScribblesNeverCrash) {
       s.kind = static_cast<StrokeKind>(uniform_index(random, 3));
       s.width_px = uniform(random, 0, 20);
       const auto points = uniform_index(random, 8);
-      for (std::uint64_t p = 0; p < points; ++p) s.points_px.emplace_back(uniform(random, -100, 400), uniform(random, -100, 300));
+      for (std::uint64_t p = 0; p < points; ++p)
+        s.points_px.emplace_back(uniform(random, -100, 400), uniform(random, -100, 300));
       sketch.strokes.push_back(s);
     }
     const auto clean = clean_sketch(sketch);

@@ -20,12 +20,15 @@ using test::IsOk;
 cv::Mat drawing(const cv::Scalar& pen, bool ruled) {
   cv::Mat paper(900, 1200, CV_8UC3, cv::Scalar(235, 238, 240));
   if (ruled)
-    for (int y = 60; y < 900; y += 60) cv::line(paper, {0, y}, {1199, y + 6}, cv::Scalar(190, 190, 190), 2, cv::LINE_AA);
+    for (int y = 60; y < 900; y += 60)
+      cv::line(paper, {0, y}, {1199, y + 6}, cv::Scalar(190, 190, 190), 2, cv::LINE_AA);
   const auto line = [&](int x1, int y1, int x2, int y2) { cv::line(paper, {x1, y1}, {x2, y2}, pen, 5, cv::LINE_AA); };
-  line(200, 150, 1000, 156), line(1000, 156, 996, 740), line(996, 740, 204, 745), line(204, 745, 200, 150), line(600, 153, 604, 742);
+  line(200, 150, 1000, 156), line(1000, 156, 996, 740), line(996, 740, 204, 745), line(204, 745, 200, 150),
+      line(600, 153, 604, 742);
   for (int y = 0; y < paper.rows; ++y)
     for (int x = 0; x < paper.cols; ++x)
-      for (auto& value : paper.at<cv::Vec3b>(y, x).val) value = static_cast<uchar>(value * (0.55 + 0.4 * x / paper.cols));
+      for (auto& value : paper.at<cv::Vec3b>(y, x).val)
+        value = static_cast<uchar>(value * (0.55 + 0.4 * x / paper.cols));
   cv::GaussianBlur(paper, paper, {3, 3}, 0.8);
   return paper;
 }
@@ -60,7 +63,8 @@ TEST(SketchPhoto, StrokesLieOnTheInk) {
   for (const auto& s : photo->strokes)
     for (const auto& p : s.points_px) {
       ASSERT_TRUE(p.x() >= 0 && p.y() >= 0 && p.x() < picture.cols && p.y() < picture.rows);
-      const cv::Rect around = cv::Rect(static_cast<int>(p.x()) - 4, static_cast<int>(p.y()) - 4, 9, 9) & cv::Rect(0, 0, picture.cols, picture.rows);
+      const cv::Rect around = cv::Rect(static_cast<int>(p.x()) - 4, static_cast<int>(p.y()) - 4, 9, 9) &
+                              cv::Rect(0, 0, picture.cols, picture.rows);
       cv::Mat green;
       cv::extractChannel(picture(around), green, 1);
       double darkest = 255;

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "slam/align.hpp"
+#include "slam/graph_edge_cost.hpp"
 #include "slam/motion_model.hpp"
 #include "slam/pose_search.hpp"
-#include "slam/graph_edge_cost.hpp"
 #include "tests/engine/slam/toy_world.hpp"
 #include "tests/support/near.hpp"
 
@@ -30,7 +30,9 @@ TEST(PointToLine, HasTheDerivativeItSays) {
       Eigen::Vector3d up = T.vector(), down = T.vector();
       up[k] += 1e-6;
       down[k] -= 1e-6;
-      const double numeric = (point_to_line(p, q, n, {up.x(), up.y(), up.z()}).residual_m - point_to_line(p, q, n, {down.x(), down.y(), down.z()}).residual_m) / 2e-6;
+      const double numeric = (point_to_line(p, q, n, {up.x(), up.y(), up.z()}).residual_m -
+                              point_to_line(p, q, n, {down.x(), down.y(), down.z()}).residual_m) /
+                             2e-6;
       EXPECT_NEAR(row.jacobian[k], numeric, 1e-6);
     }
   }
@@ -173,7 +175,8 @@ TEST(SurfacePoints, StraightenAScanTakenWhileTurning) {
   const double time_increment = 0.1 / 180;
   for (std::size_t i = 0; i < 180; ++i) {
     const Pose2 at = Pose2(13, 1, 0) * twist.after(static_cast<double>(i) * time_increment);
-    scan.ranges_m[i] = static_cast<float>(test::cast(walls, at.translation(), at.heading() - kPi + static_cast<double>(i) * 2 * kPi / 180, 12));
+    scan.ranges_m[i] = static_cast<float>(
+        test::cast(walls, at.translation(), at.heading() - kPi + static_cast<double>(i) * 2 * kPi / 180, 12));
   }
   const auto off_wall = [&](const ScanPoints& points) {
     double worst = 0;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-
 #include "slam/radar_points.hpp"
 #include "slam/slam.hpp"
 #include "slam/smoke.hpp"

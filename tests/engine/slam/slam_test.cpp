@@ -169,10 +169,12 @@ TEST(Slam, AnEmptyOneAnswersCalmly) {
 TEST(Slam, AKidnappedRobotSpoilsNothingAndIsCounted) {
   Drive run = two_rounds(0.25, 11);
   std::mt19937_64 random(1);
-  const std::vector<Segment2> elsewhere{{{0, 0}, {5, 1}}, {{5, 1}, {3, 6}}, {{3, 6}, {-1, 4}}, {{-1, 4}, {0, 0}}, {{1, 1}, {1, 2}}};
+  const std::vector<Segment2> elsewhere{
+      {{0, 0}, {5, 1}}, {{5, 1}, {3, 6}}, {{3, 6}, {-1, 4}}, {{-1, 4}, {0, 0}}, {{1, 1}, {1, 2}}};
   Slam slam;
   for (std::size_t i = 0; i < 60; ++i) (void)slam.add_scan(run.scans[i]).ok();
-  for (int i = 0; i < 20; ++i) (void)slam.add_scan(test::scan_at(elsewhere, {2, 2.5, 0.02 * i}, 200 + 0.5 * i, random)).ok();
+  for (int i = 0; i < 20; ++i)
+    (void)slam.add_scan(test::scan_at(elsewhere, {2, 2.5, 0.02 * i}, 200 + 0.5 * i, random)).ok();
   slam.optimize();
   EXPECT_GE(slam.counters().poor_matches, 1);
   EXPECT_EQ(slam.counters().lost, 1);
@@ -203,7 +205,8 @@ TEST(PoseGraphSolve, HalfOfTheLoopsWrongAreOutvoted) {
     if (i == 0) {
       node.T_map_robot = truth[0];
     } else {
-      const Pose2 z = truth[i - 1].inverse() * truth[i] * Pose2(normal(random, 0.01), normal(random, 0.01), normal(random, 0.004));
+      const Pose2 z =
+          truth[i - 1].inverse() * truth[i] * Pose2(normal(random, 0.01), normal(random, 0.01), normal(random, 0.004));
       node.T_map_robot = graph.nodes.back().T_map_robot * z;
       graph.edges.push_back(edge_between(node.id - 1, node.id, z, 0.01, 0.004, EdgeKind::kMatched));
     }
@@ -257,7 +260,9 @@ TEST(RenderMap, KeptUpToDateEqualsDrawnAnew) {
   for (int round = 0; round < 4; ++round) {
     std::vector<Pose2> poses;
     for (const PoseNode& node : graph.nodes)
-      poses.push_back(uniform01(random) < 0.3 ? node.T_map_robot * Pose2(normal(random, 0.2), normal(random, 0.2), normal(random, 0.1)) : node.T_map_robot);
+      poses.push_back(uniform01(random) < 0.3
+                          ? node.T_map_robot * Pose2(normal(random, 0.2), normal(random, 0.2), normal(random, 0.1))
+                          : node.T_map_robot);
     renderer.update(graph, poses);
     const OccupancyGrid kept = renderer.occupancy(), anew = render_map(graph, poses, params);
     EXPECT_EQ(kept.frame().width_cells, anew.frame().width_cells);

@@ -12,9 +12,24 @@ namespace smokemap::test {
 /// A ring of corridors around a block, with niches so that no place looks like another: 14 m x 10 m.
 inline std::vector<Segment2> ring_of_corridors() {
   const std::vector<std::vector<Point2>> rings{
-      {{0, 0}, {3, 0}, {3, -0.6}, {4.2, -0.6}, {4.2, 0}, {14, 0}, {14, 4}, {14.8, 4}, {14.8, 6.5}, {14, 6.5}, {14, 10}, {9, 10},
-       {9, 10.7}, {7.5, 10.7}, {7.5, 10}, {0, 10}, {0, 7}, {-0.5, 7}, {-0.5, 6.2}, {0, 6.2}},
-      {{2, 2}, {2, 8}, {5, 8}, {5, 7.4}, {6.5, 7.4}, {6.5, 8}, {12, 8}, {12, 5}, {11.3, 5}, {11.3, 3.5}, {12, 3.5}, {12, 2}, {8, 2}, {8, 2.5}, {7.2, 2.5}, {7.2, 2}}};
+      {{0, 0},   {3, 0},  {3, -0.6}, {4.2, -0.6}, {4.2, 0},  {14, 0}, {14, 4}, {14.8, 4}, {14.8, 6.5}, {14, 6.5},
+       {14, 10}, {9, 10}, {9, 10.7}, {7.5, 10.7}, {7.5, 10}, {0, 10}, {0, 7},  {-0.5, 7}, {-0.5, 6.2}, {0, 6.2}},
+      {{2, 2},
+       {2, 8},
+       {5, 8},
+       {5, 7.4},
+       {6.5, 7.4},
+       {6.5, 8},
+       {12, 8},
+       {12, 5},
+       {11.3, 5},
+       {11.3, 3.5},
+       {12, 3.5},
+       {12, 2},
+       {8, 2},
+       {8, 2.5},
+       {7.2, 2.5},
+       {7.2, 2}}};
   std::vector<Segment2> walls;
   for (const auto& ring : rings)
     for (std::size_t i = 0; i < ring.size(); ++i) walls.push_back({ring[i], ring[(i + 1) % ring.size()]});
@@ -30,7 +45,8 @@ inline double cast(const std::vector<Segment2>& walls, const Point2& from, doubl
 }
 
 /// A scan of 180 beams over the whole turn, 1 cm noise, 12 m reach; no return is infinite.
-inline LaserScan scan_at(const std::vector<Segment2>& walls, const Pose2& T_world_robot, double seconds, std::mt19937_64& random, int beams = 180) {
+inline LaserScan scan_at(const std::vector<Segment2>& walls, const Pose2& T_world_robot, double seconds,
+                         std::mt19937_64& random, int beams = 180) {
   LaserScan scan;
   scan.stamp = from_seconds(seconds);
   scan.robot = "robot";
@@ -39,8 +55,10 @@ inline LaserScan scan_at(const std::vector<Segment2>& walls, const Pose2& T_worl
   scan.range_min_m = 0.05;
   scan.range_max_m = 12;
   for (int i = 0; i < beams; ++i) {
-    const double r = cast(walls, T_world_robot.translation(), T_world_robot.heading() + scan.angle_min_rad + i * scan.angle_increment_rad, 13);
-    scan.ranges_m.push_back(r < 12 ? static_cast<float>(r + normal(random, 0.01)) : std::numeric_limits<float>::infinity());
+    const double r = cast(walls, T_world_robot.translation(),
+                          T_world_robot.heading() + scan.angle_min_rad + i * scan.angle_increment_rad, 13);
+    scan.ranges_m.push_back(r < 12 ? static_cast<float>(r + normal(random, 0.01))
+                                   : std::numeric_limits<float>::infinity());
   }
   return scan;
 }
@@ -68,7 +86,8 @@ class Wheels {
     if (started_) {
       const Pose2 step = last_.inverse() * T_world_robot;
       const double way = step.translation().norm();
-      T_odom_ = T_odom_ * Pose2(step.translation() * (scale_ + normal(random_, share_)), step.heading() * (1 + normal(random_, share_)) + drift_ * way);
+      T_odom_ = T_odom_ * Pose2(step.translation() * (scale_ + normal(random_, share_)),
+                                step.heading() * (1 + normal(random_, share_)) + drift_ * way);
     }
     started_ = true;
     last_ = T_world_robot;

@@ -51,7 +51,8 @@ TEST(RelationError, IsZeroForTheTruthHoweverItLies) {
 TEST(RelationError, IsWhatWasPlanted) {
   const Trajectory truth = winding(300, 3);
   auto relations = relations_of(truth, 4);
-  for (PoseRelation& r : relations) r.T_from_to = {r.T_from_to.translation() + Point2(0.03, 0.04), r.T_from_to.heading() + 0.02};
+  for (PoseRelation& r : relations)
+    r.T_from_to = {r.T_from_to.translation() + Point2(0.03, 0.04), r.T_from_to.heading() + 0.02};
   const auto error = relation_error(truth, relations);
   ASSERT_TRUE(error);
   EXPECT_NEAR(error->translation_m.mean, 0.05, 1e-9);
@@ -67,7 +68,8 @@ TEST(RelationError, FillsStampsBetweenScansByOdometry) {
     odometry.push_back({truth[i].stamp, "robot", Pose2(9, 9, 2) * truth[i].T_map_robot, 0, 0});
     if (i % 5 == 0) sparse.push_back(truth[i]);
   }
-  const auto with = relation_error(sparse, relations_of(truth, 6), odometry), without = relation_error(sparse, relations_of(truth, 6));
+  const auto with = relation_error(sparse, relations_of(truth, 6), odometry),
+             without = relation_error(sparse, relations_of(truth, 6));
   ASSERT_TRUE(with && without);
   EXPECT_LT(with->translation_m.most, 0.02);
   EXPECT_EQ(with->missing, 0u);
@@ -84,7 +86,8 @@ TEST(AbsoluteError, ForgetsARigidMotionAndKnowsTheLever) {
   Trajectory lever = truth;
   for (StampedPose& pose : lever) pose.T_map_robot = pose.T_map_robot * Pose2(0.7, 0.1, 0);
   const Trajectory estimate = moved({-4, 8, 2.5}, truth);
-  const auto exact = absolute_error(estimate, truth), with = absolute_error(estimate, lever, {0.7, 0.1}), without = absolute_error(estimate, lever);
+  const auto exact = absolute_error(estimate, truth), with = absolute_error(estimate, lever, {0.7, 0.1}),
+             without = absolute_error(estimate, lever);
   ASSERT_TRUE(exact && with && without);
   EXPECT_LT(exact->rmse_m, 1e-9);
   EXPECT_LT(exact->rotation_rmse_rad, 1e-9);

@@ -17,7 +17,8 @@ namespace {
 cv::Mat solid(int rows, int cols) { return cv::Mat(rows, cols, CV_8UC1, cv::Scalar(0)); }
 
 int count_kind(const VoronoiGraph& graph, VoronoiNodeKind kind) {
-  return static_cast<int>(std::count_if(graph.nodes.begin(), graph.nodes.end(), [&](const VoronoiNode& n) { return n.kind == kind; }));
+  return static_cast<int>(
+      std::count_if(graph.nodes.begin(), graph.nodes.end(), [&](const VoronoiNode& n) { return n.kind == kind; }));
 }
 
 int count_parts(const VoronoiGraph& graph) {
@@ -99,13 +100,15 @@ TEST(VoronoiGraph, HasAPartForEveryPartOfFreeSpaceAndARingForEveryObstacle) {
     std::mt19937_64 random(seed);
     cv::Mat map = solid(110, 140);
     for (int i = 0; i < 9; ++i)
-      map(cv::Rect(static_cast<int>(uniform(random, 2, 100)), static_cast<int>(uniform(random, 2, 70)), static_cast<int>(uniform(random, 9, 36)),
-                   static_cast<int>(uniform(random, 9, 36)))).setTo(255);
+      map(cv::Rect(static_cast<int>(uniform(random, 2, 100)), static_cast<int>(uniform(random, 2, 70)),
+                   static_cast<int>(uniform(random, 9, 36)), static_cast<int>(uniform(random, 9, 36))))
+          .setTo(255);
     const auto graph = voronoi_graph(map, {.trim_ratio = 0.5, .min_clearance_px = 0.5});
     ASSERT_TRUE(graph);
     const auto [parts, holes] = parts_and_holes(map);
     EXPECT_EQ(count_parts(*graph), parts) << "seed " << seed;
-    const int rings = static_cast<int>(graph->edges.size()) - static_cast<int>(graph->nodes.size()) + count_parts(*graph);
+    const int rings =
+        static_cast<int>(graph->edges.size()) - static_cast<int>(graph->nodes.size()) + count_parts(*graph);
     EXPECT_EQ(rings, holes) << "seed " << seed;
   }
 }

@@ -103,9 +103,23 @@ TEST(Secrets, AreNotTheSameTwice) {
 
 /// One command of every kind, and the engaged and released stop.
 std::vector<Command> every_command() {
-  return {SetLayout{}, SetStart{}, AddAnchor{}, RemoveAnchor{}, JudgeWall{}, AddStroke{}, EraseStroke{}, ClearSketch{},
-          SetSketchSheet{}, JudgePair{}, PlacePoi{}, RemovePoi{}, SetGoal{}, CancelGoal{}, EmergencyStop{"", true},
-          EmergencyStop{"", false}, SetExploring{}};
+  return {SetLayout{},
+          SetStart{},
+          AddAnchor{},
+          RemoveAnchor{},
+          JudgeWall{},
+          AddStroke{},
+          EraseStroke{},
+          ClearSketch{},
+          SetSketchSheet{},
+          JudgePair{},
+          PlacePoi{},
+          RemovePoi{},
+          SetGoal{},
+          CancelGoal{},
+          EmergencyStop{"", true},
+          EmergencyStop{"", false},
+          SetExploring{}};
 }
 
 TEST(Permission, IsWhatTheProtocolSaysForEveryCommandAndRole) {
@@ -133,8 +147,8 @@ TEST(Host, MustBeOneTheServerAnswersFor) {
   EXPECT_TRUE(policy.host_is_ours("192.168.1.5:8080", "192.168.1.5", 8080));
   EXPECT_TRUE(policy.host_is_ours("192.168.1.5:8080", "::ffff:192.168.1.5", 8080));
   EXPECT_TRUE(policy.host_is_ours("map.example:8080", "192.168.1.5", 8080));
-  for (const char* host : {"", "localhost:8081", "evil.example:8080", "localhost.evil.example:8080", "127.0.0.1:8080.evil",
-                           "map.example.evil:8080", "localhost"})
+  for (const char* host : {"", "localhost:8081", "evil.example:8080", "localhost.evil.example:8080",
+                           "127.0.0.1:8080.evil", "map.example.evil:8080", "localhost"})
     EXPECT_FALSE(policy.host_is_ours(host, "127.0.0.1", 8080)) << host;
   EXPECT_FALSE(policy.host_is_ours("localhost:8080", "192.168.1.5", 8080)) << "a name of this machine, from another";
 }

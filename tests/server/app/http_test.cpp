@@ -138,7 +138,8 @@ TEST(Uploads, AreRefusedByTheirHeadWhenTooLarge) {
   RunningServer running;
   const std::string token = RunningServer::bearer(running.pair("commander"));
   RawClient client(running.port());
-  client.send("POST /api/plans HTTP/1.1\r\nHost: " + client.host() + "\r\nContent-Length: 99999999\r\n" + token + "\r\n");
+  client.send("POST /api/plans HTTP/1.1\r\nHost: " + client.host() + "\r\nContent-Length: 99999999\r\n" + token +
+              "\r\n");
   const auto answer = client.answer();
   EXPECT_EQ(answer.status, 413);
   EXPECT_EQ(error_code_of(answer), "too_large");
@@ -150,10 +151,11 @@ TEST(Uploads, AreRefusedByTheirHeadWhenTooLarge) {
 
 TEST(Http, SurvivesRequestsThatAreNone) {
   RunningServer running;
-  for (const std::string& text : {std::string("\0\0\0\0\r\n\r\n", 8), std::string("GET\r\n\r\n"), std::string("GET / HTTP/9.9\r\n\r\n"),
-                                  "GET /" + std::string(40'000, 'a') + " HTTP/1.1\r\n\r\n",
-                                  "POST /api/pair HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(running.port()) +
-                                      "\r\nContent-Length: -5\r\n\r\n"}) {
+  for (const std::string& text :
+       {std::string("\0\0\0\0\r\n\r\n", 8), std::string("GET\r\n\r\n"), std::string("GET / HTTP/9.9\r\n\r\n"),
+        "GET /" + std::string(40'000, 'a') + " HTTP/1.1\r\n\r\n",
+        "POST /api/pair HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(running.port()) +
+            "\r\nContent-Length: -5\r\n\r\n"}) {
     RawClient client(running.port());
     client.send(text);
     const int status = client.answer().status;
@@ -167,11 +169,13 @@ TEST(Commands, AreTakenOverHttpToo) {
   RunningServer running;
   const std::string token = RunningServer::bearer(running.pair("firefighter"));
   RawClient client(running.port());
-  const std::string poi = R"({"id":"c1","name":"place_poi","data":{"poi_id":"p1","kind":"fire","frame":"map","p":[1,2]}})";
+  const std::string poi =
+      R"({"id":"c1","name":"place_poi","data":{"poi_id":"p1","kind":"fire","frame":"map","p":[1,2]}})";
   const auto done = client.ask("POST", "/api/commands", poi, token);
   EXPECT_EQ(done.status, 200);
   EXPECT_EQ(Json::parse(done.body)["seq"], 1);
-  const auto refused = client.ask("POST", "/api/commands", R"({"id":"c2","name":"cancel_goal","data":{"goal_id":"g"}})", token);
+  const auto refused =
+      client.ask("POST", "/api/commands", R"({"id":"c2","name":"cancel_goal","data":{"goal_id":"g"}})", token);
   EXPECT_EQ(refused.status, 403);
   const auto unknown = client.ask("POST", "/api/commands", R"({"id":"c3","name":"dance","data":{}})", token);
   EXPECT_EQ(unknown.status, 422);
@@ -183,8 +187,10 @@ TEST(Events, AreListedAndExportedAndLookedBackTo) {
   const std::string token = RunningServer::bearer(running.pair("commander"));
   RawClient client(running.port());
   for (int i = 1; i <= 3; ++i)
-    client.ask("POST", "/api/commands", R"({"id":"c)" + std::to_string(i) + R"(","name":"place_poi","data":{"poi_id":"p)" +
-               std::to_string(i) + R"(","kind":"fire","frame":"map","p":[1,2]}})", token);
+    client.ask("POST", "/api/commands",
+               R"({"id":"c)" + std::to_string(i) + R"(","name":"place_poi","data":{"poi_id":"p)" + std::to_string(i) +
+                   R"(","kind":"fire","frame":"map","p":[1,2]}})",
+               token);
   const Json page = Json::parse(client.ask("GET", "/api/events?from=2&limit=1", "", token).body);
   ASSERT_EQ(page["events"].size(), 1u);
   EXPECT_EQ(page["events"][0]["data"]["poi_id"], "p2");

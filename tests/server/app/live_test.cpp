@@ -55,13 +55,16 @@ TEST(LiveSocket, ClosesWithTheCodeThatSaysWhy) {
       if (frame->opcode == 8) return frame->close_code();
     return 0;
   };
-  EXPECT_EQ(closing([](RawClient& c) { c.send_frame(R"({"type":"hello","version":1,"token":"x","epoch":0,"seq":0})"); }, false), 4001);
+  EXPECT_EQ(closing([](RawClient& c) { c.send_frame(R"({"type":"hello","version":1,"token":"x","epoch":0,"seq":0})"); },
+                    false),
+            4001);
   EXPECT_EQ(closing([](RawClient& c) { c.send_frame("{"); }), 4003);
   EXPECT_EQ(closing([](RawClient& c) { c.send_frame("\x01\x02", 2); }), 4003);
   EXPECT_EQ(closing([](RawClient& c) { c.send_frame(std::string(5000, '[')); }), 4003);
   EXPECT_EQ(closing([](RawClient& c) {
-    for (int i = 0; i < 1000; ++i) c.send_frame(R"({"type":"ping","t":1})");
-  }), 4029);
+              for (int i = 0; i < 1000; ++i) c.send_frame(R"({"type":"ping","t":1})");
+            }),
+            4029);
 }
 
 TEST(LiveSocket, SurvivesFramesThatAreNone) {
@@ -72,7 +75,8 @@ TEST(LiveSocket, SurvivesFramesThatAreNone) {
     RawClient client(running.port());
     client.upgrade();
     std::string noise;
-    for (std::uint64_t n = uniform_index(random, 200); n > 0; --n) noise += static_cast<char>(uniform_index(random, 256));
+    for (std::uint64_t n = uniform_index(random, 200); n > 0; --n)
+      noise += static_cast<char>(uniform_index(random, 256));
     if (i % 3 == 0) client.send_frame(noise);
     if (i % 3 == 1) client.send_frame(R"({"type":"ping","t":1})", 1, false);  // unmasked
     if (i % 3 == 2) client.send(noise);
@@ -105,15 +109,20 @@ TEST(LiveSocket, ShowsWhoIsThereAndWhoLeft) {
   {
     Browser bo(running, running.pair("firefighter", "Bo"));
     bo.client.send_frame(R"({"type":"presence","mode":"sketch","p":[1,2]})");
-    EXPECT_FALSE(anna.wait_for([](const Json& m) { return m.value("part", "") == "people" && m.dump().find("Bo") != std::string::npos; }).is_null());
+    EXPECT_FALSE(anna.wait_for([](const Json& m) {
+                       return m.value("part", "") == "people" && m.dump().find("Bo") != std::string::npos;
+                     })
+                     .is_null());
   }
-  EXPECT_FALSE(anna.wait_for([](const Json& m) { return m.value("part", "") == "people" && !m["del"].empty(); }).is_null());
+  EXPECT_FALSE(
+      anna.wait_for([](const Json& m) { return m.value("part", "") == "people" && !m["del"].empty(); }).is_null());
 }
 
 TEST(LiveSocket, AnswersEveryCommandOfEveryRoleAsTheTableSays) {
   RunningServer running;
   const auto folder = std::filesystem::path(SMOKEMAP_SOURCE_DIR) / "proto/examples";
-  const std::set<std::string> of_firefighters{"add_stroke", "erase_stroke", "clear_sketch", "set_sketch_sheet", "judge_pair", "place_poi", "remove_poi"};
+  const std::set<std::string> of_firefighters{"add_stroke", "erase_stroke", "clear_sketch", "set_sketch_sheet",
+                                              "judge_pair", "place_poi",    "remove_poi"};
   for (const char* role : {"observer", "firefighter", "commander"}) {
     Browser browser(running, running.pair(role));
     for (const char* name : command_names()) {
@@ -128,7 +137,8 @@ TEST(LiveSocket, AnswersEveryCommandOfEveryRoleAsTheTableSays) {
       EXPECT_EQ(answer["code"], "forbidden") << id;
     }
     browser.command(std::string(role) + "release", "emergency_stop", R"({"robot":"","engaged":false})");
-    EXPECT_EQ(browser.wait_for_answer(std::string(role) + "release")["type"], std::string(role) == "commander" ? "done" : "refused");
+    EXPECT_EQ(browser.wait_for_answer(std::string(role) + "release")["type"],
+              std::string(role) == "commander" ? "done" : "refused");
   }
 }
 
@@ -215,7 +225,8 @@ TEST(LiveSocket, GivesASlowBrowserTheNewestMapAndSlowsNobody) {
   std::map<TileKey, PackedTile> shown;
   for (int round = 0; round < 4; ++round) {
     auto next = std::make_shared<OccupancyGrid>(*grid);
-    for (int i = 0; i < 1000; ++i) next->cells()[uniform_index(random, next->cells().size())] = static_cast<std::int8_t>(round);
+    for (int i = 0; i < 1000; ++i)
+      next->cells()[uniform_index(random, next->cells().size())] = static_cast<std::int8_t>(round);
     grid = next;
     running.engine().show(grid);
     // The quick one draws everything of this round while the slow one reads nothing.

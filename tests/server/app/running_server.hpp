@@ -52,7 +52,8 @@ class RunningServer {
 
   std::string pair(const std::string& role, const std::string& name = "Anna") {
     RawClient client(port());
-    const auto answer = client.ask("POST", "/api/pair", R"({"pin":"123456","name":")" + name + R"(","role":")" + role + "\"}");
+    const auto answer =
+        client.ask("POST", "/api/pair", R"({"pin":"123456","name":")" + name + R"(","role":")" + role + "\"}");
     EXPECT_EQ(answer.status, 200) << answer.body;
     return server::Json::parse(answer.body, nullptr, false).value("token", "");
   }
@@ -91,10 +92,12 @@ class Browser {
     return nullptr;
   }
   server::Json wait_for_answer(const std::string& id) {
-    return wait_for([&id](const server::Json& m) { return (m["type"] == "done" || m["type"] == "refused") && m["id"] == id; });
+    return wait_for(
+        [&id](const server::Json& m) { return (m["type"] == "done" || m["type"] == "refused") && m["id"] == id; });
   }
   server::Json wait_for_object(const std::string& part, const std::string& id) {
-    const auto message = wait_for([&](const server::Json& m) { return m["type"] == "delta" && m["part"] == part && m["set"].contains(id); });
+    const auto message = wait_for(
+        [&](const server::Json& m) { return m["type"] == "delta" && m["part"] == part && m["set"].contains(id); });
     return message.is_null() ? message : message["set"][id];
   }
   RawClient client;

@@ -16,7 +16,8 @@ struct Parts {
   Parts() {
     PairingParams params;
     params.pin = "123456";
-    access = std::make_unique<Access>(params, std::make_shared<ManualClock>(), [](const PairedDevice&) -> Result<Ok> { return Ok{}; });
+    access = std::make_unique<Access>(params, std::make_shared<ManualClock>(),
+                                      [](const PairedDevice&) -> Result<Ok> { return Ok{}; });
     service = std::make_unique<HttpService>(OriginPolicy(), *access, workers, "", HttpService::Limits{100, 2});
   }
   Request request(Method method, const std::string& path, std::optional<Role> role = std::nullopt) {
@@ -116,7 +117,8 @@ TEST(Targets, AreDecodedOrRefused) {
   EXPECT_EQ(request.query.at("x"), "1");
   EXPECT_EQ(request.query.at("y"), "ä");
   EXPECT_TRUE(request.query.contains("z"));
-  for (const char* target : {"", "a", "/%", "/%4", "/%zz", "/%00", "/?a=%"}) EXPECT_FALSE(parse_target(target, request)) << target;
+  for (const char* target : {"", "a", "/%", "/%4", "/%zz", "/%00", "/?a=%"})
+    EXPECT_FALSE(parse_target(target, request)) << target;
 }
 
 TEST(Exports, SayStatesAndUncertainty) {

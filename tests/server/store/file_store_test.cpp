@@ -24,9 +24,11 @@ TEST(FileStore, GivesBackWhatWasPutByItsHashOnly) {
   ASSERT_THAT(sha, test::IsOk());
   EXPECT_EQ(*files->put(bytes), *sha);
   EXPECT_EQ(*files->get(*sha), bytes);
-  for (const char* name : {"", "../smokemap.db", "ABC", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"})
+  for (const char* name :
+       {"", "../smokemap.db", "ABC", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"})
     EXPECT_THAT(files->get(name), test::Fails(Errc::kNotFound)) << name;
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path() + "/files"), {}), 1) << "nothing half-written stays";
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path() + "/files"), {}), 1)
+      << "nothing half-written stays";
 }
 
 TEST(FileStore, NoticesAFileThatChanged) {

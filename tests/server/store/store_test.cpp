@@ -137,7 +137,8 @@ TEST(EventLog, LosesNothingAcknowledgedWhicheverWriteOrSyncFails) {
     const auto events = (*store)->events(1, 100);
     ASSERT_THAT(events, test::IsOk());
     EXPECT_GE(events->size(), static_cast<std::size_t>(acknowledged)) << "after failure " << nth;
-    for (int i = 0; i < acknowledged; ++i) EXPECT_EQ((*events)[static_cast<std::size_t>(i)].command_id, "e" + std::to_string(i));
+    for (int i = 0; i < acknowledged; ++i)
+      EXPECT_EQ((*events)[static_cast<std::size_t>(i)].command_id, "e" + std::to_string(i));
   }
   EXPECT_GT(rounds, 10) << "the failing disk was not asked";
   EXPECT_FALSE(failed);

@@ -18,9 +18,7 @@ TEST(ParseJson, RefusesWhatIsTooLargeTooDeepOrNoJsonWithoutThrowing) {
     EXPECT_THAT(parse_json(text), test::Fails(Errc::kCorrupt)) << text;
 }
 
-TEST(ParseJson, DoesNotCountBracketsInStrings) {
-  EXPECT_THAT(parse_json("\"[[[[\\\"[[[[\"", {1000, 2}), test::IsOk());
-}
+TEST(ParseJson, DoesNotCountBracketsInStrings) { EXPECT_THAT(parse_json("\"[[[[\\\"[[[[\"", {1000, 2}), test::IsOk()); }
 
 TEST(ToText, WritesSomethingForBytesThatAreNotUtf8) {
   EXPECT_NE(to_text(Json("a\xff")).find("\xef\xbf\xbd"), std::string::npos);
@@ -42,16 +40,21 @@ TEST(FieldsOfMessages, KeepTheFirstComplaintAndNameTheField) {
   };
   EXPECT_EQ(complaint([](Fields& f) { f.number("x"); }), "thing.x must be a number within [-10000000.0, 10000000.0]");
   EXPECT_EQ(complaint([](Fields& f) { f.id("id"); }), "thing.id must be 1 to 64 printable characters");
-  EXPECT_EQ(complaint([](Fields& f) { f.point("p"); f.boolean("flag"); }), "thing.p must be [x, y]");
+  EXPECT_EQ(complaint([](Fields& f) {
+              f.point("p");
+              f.boolean("flag");
+            }),
+            "thing.p must be [x, y]");
   EXPECT_EQ(complaint([](Fields& f) { f.array("list", 2); }), "thing.list must be a list of at most 2");
   EXPECT_EQ(complaint([](Fields& f) { f.text("none", 5); }), "thing.none is missing");
   EXPECT_EQ(complaint([](Fields& f) { f.text("none", 5, false); }), "");
 }
 
 TEST(ClientMessages, AreRefusedWhenMalformed) {
-  for (const char* text : {R"([])", R"({"type":1})", R"({"type":"hello","version":1})", R"({"type":"hello","token":"x","version":2})",
-                           R"({"type":"command","id":"a","name":"x","data":[]})", R"({"type":"ping"})",
-                           R"({"type":"ink","stroke_id":"s","points":[[1]]})", R"({"type":"view","x":1})"})
+  for (const char* text :
+       {R"([])", R"({"type":1})", R"({"type":"hello","version":1})", R"({"type":"hello","token":"x","version":2})",
+        R"({"type":"command","id":"a","name":"x","data":[]})", R"({"type":"ping"})",
+        R"({"type":"ink","stroke_id":"s","points":[[1]]})", R"({"type":"view","x":1})"})
     EXPECT_THAT(parse_client_message(text), test::Fails(Errc::kInvalidArgument)) << text;
   EXPECT_THAT(parse_client_message(R"({"type":"dance"})"), test::Fails(Errc::kNotFound));
 }
@@ -63,7 +66,8 @@ TEST(ClientMessages, OfNewerBrowsersMaySayMore) {
 }
 
 TEST(ClientMessages, TakeCountersThatMakeNoSenseAsZero) {
-  const auto message = parse_client_message(R"({"type":"hello","token":"t","version":1,"epoch":-5,"seq":1e300,"parts":{"walls":"x","nonsense":3}})");
+  const auto message = parse_client_message(
+      R"({"type":"hello","token":"t","version":1,"epoch":-5,"seq":1e300,"parts":{"walls":"x","nonsense":3}})");
   ASSERT_THAT(message, test::IsOk());
   const auto& hello = std::get<HelloMessage>(*message);
   EXPECT_EQ(hello.epoch, 0u);

@@ -74,7 +74,9 @@ LiveEncoder::Input input_with(std::shared_ptr<const Snapshot> snapshot) { return
 TEST(LiveEncoder, SendsRobotsMoreOftenThanWallsAndSaysWhenToComeBack) {
   LiveEncoder encoder({}, 1);
   auto snapshot = std::make_shared<Snapshot>(test::example_snapshot());
-  const auto revision = [&](Part part) { return encoder.state()->parts[static_cast<std::size_t>(part)].state->revision; };
+  const auto revision = [&](Part part) {
+    return encoder.state()->parts[static_cast<std::size_t>(part)].state->revision;
+  };
   EXPECT_NE(encoder.update(input_with(snapshot), 0), nullptr);
   EXPECT_EQ(revision(Part::kRobots), 1u);
   auto moved = std::make_shared<Snapshot>(*snapshot);

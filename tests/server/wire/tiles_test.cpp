@@ -49,7 +49,8 @@ TEST(MergedTiles, HoldEveryCellOfTheGridWhereverItLies) {
     const int x0 = static_cast<int>(std::lround(frame.origin.x() / kResolution));
     const int y0 = static_cast<int>(std::lround(frame.origin.y() / kResolution));
     for (int i = 0; i < 500; ++i) {
-      const Cell cell{static_cast<int>(uniform_index(random, 400)) - 50, static_cast<int>(uniform_index(random, 400)) - 50};
+      const Cell cell{static_cast<int>(uniform_index(random, 400)) - 50,
+                      static_cast<int>(uniform_index(random, 400)) - 50};
       ASSERT_EQ(code_of(tiles, x0 + cell.x, y0 + cell.y), occupancy_code(grid.get(cell))) << cell.x << " " << cell.y;
     }
   }

@@ -28,7 +28,8 @@ class NoPeer final : public Peer {
 };
 
 /// A grid of `size` cells in which a square of known cells stands at (x, y).
-std::shared_ptr<Snapshot> snapshot_with(std::mt19937_64& random, int changes, const std::shared_ptr<const Snapshot>& before) {
+std::shared_ptr<Snapshot> snapshot_with(std::mt19937_64& random, int changes,
+                                        const std::shared_ptr<const Snapshot>& before) {
   auto next = before ? std::make_shared<Snapshot>(*before) : std::make_shared<Snapshot>();
   auto grid = before ? std::make_shared<OccupancyGrid>(*before->sensed)
                      : std::make_shared<OccupancyGrid>(GridFrame{0.05, Eigen::Vector2d(-32, -32), 1280, 1280});
@@ -51,13 +52,15 @@ struct World {
   ~World() { hub->stop(std::chrono::milliseconds(0)); }
   std::unique_ptr<LiveSession> session(const std::shared_ptr<Peer>& peer, LiveSession::Params params = {}) {
     auto shared = std::make_shared<LiveSession*>(nullptr);
-    LiveSession::World parts{*access, *hub, sink, clock, peer, [shared](const CommandReply& r) { (*shared)->on_reply(r); }};
+    LiveSession::World parts{*access, *hub, sink,
+                             clock,   peer, [shared](const CommandReply& r) { (*shared)->on_reply(r); }};
     auto session = std::make_unique<LiveSession>(params, std::move(parts));
     *shared = session.get();
     return session;
   }
   std::string hello(const std::string& more = {}) const {
-    return R"({"type":"hello","version":1,"token":")" + token + "\"" + (more.empty() ? R"(,"epoch":0,"seq":0)" : more) + "}";
+    return R"({"type":"hello","version":1,"token":")" + token + "\"" + (more.empty() ? R"(,"epoch":0,"seq":0)" : more) +
+           "}";
   }
   /// Shows the snapshot and waits until the hub has encoded it.
   void show(const std::shared_ptr<const Snapshot>& snapshot) {
@@ -288,7 +291,8 @@ TEST(LiveSession, CarriesCommandsWithTheNameOfWhoeverHoldsTheToken) {
   EXPECT_EQ(world.sink.last, "Anna: clear_sketch");
   Drawing drawing;
   drawing.drain(*session);
-  const auto done = std::find_if(drawing.texts.begin(), drawing.texts.end(), [](const Json& t) { return t["type"] == "done"; });
+  const auto done =
+      std::find_if(drawing.texts.begin(), drawing.texts.end(), [](const Json& t) { return t["type"] == "done"; });
   ASSERT_NE(done, drawing.texts.end());
   EXPECT_EQ((*done)["id"], "c1");
 }

@@ -17,7 +17,8 @@ TEST(DrawnLineCost, IsZeroOnTheLineAndInStandardDeviationsOff) {
   for (int i = 0; i < 100; ++i) {
     const double axis = uniform(random, -3, 3), turn = uniform(random, -3, 3), at = uniform(random, -20, 20);
     const Pose2 along(0, 0, axis + turn);
-    const Point2 on = along * Point2(at, uniform(random, -9, 9)), off = along * Point2(at + 0.1, uniform(random, -9, 9));
+    const Point2 on = along * Point2(at, uniform(random, -9, 9)),
+                 off = along * Point2(at + 0.1, uniform(random, -9, 9));
     const OwnedCost cost(DrawnLineCost::Create(axis, 0.05));
     EXPECT_NEAR(residuals_of(*cost, {{on.x(), on.y()}, {turn}, {at}})[0], 0, 1e-9);
     EXPECT_NEAR(residuals_of(*cost, {{off.x(), off.y()}, {turn}, {at}})[0], 2, 1e-9);

@@ -24,7 +24,8 @@ TEST(AcgRelativePoseCost, IsZeroAtTheTruth) {
 }
 
 TEST(AcgRelativePoseCost, IsInStandardDeviations) {
-  const CostPtr cost(RelativePoseCost::Create(Pose2(1, 0, 0), Eigen::Vector3d(1 / 0.1, 1 / 0.2, 1 / 0.05).asDiagonal()));
+  const CostPtr cost(
+      RelativePoseCost::Create(Pose2(1, 0, 0), Eigen::Vector3d(1 / 0.1, 1 / 0.2, 1 / 0.05).asDiagonal()));
   const auto r = residuals_of(*cost, {{0, 0, 0}, {1.2, 0.2, 0.15}});
   EXPECT_NEAR(r[0], 2, 1e-9);
   EXPECT_NEAR(r[1], 1, 1e-9);

@@ -43,7 +43,8 @@ inline void expect_jacobian_is_numeric(const ceres::CostFunction& cost, Blocks b
       blocks[b][k] = before;
       for (std::size_t r = 0; r < rows; ++r) {
         const double numeric = (high[r] - low[r]) / (2 * kStep), ours = jacobians[b][r * blocks[b].size() + k];
-        EXPECT_NEAR(ours, numeric, tolerance * (1 + std::abs(numeric))) << "block " << b << " value " << k << " residual " << r;
+        EXPECT_NEAR(ours, numeric, tolerance * (1 + std::abs(numeric)))
+            << "block " << b << " value " << k << " residual " << r;
       }
     }
 }

@@ -23,7 +23,9 @@ TEST(WallShapeCost, IsZeroForATurnedScaledAndShiftedPlan) {
     const Pose2 rotation(0, 0, turn);
     const CostOwner cost(WallShapeCost::Create((b - a).norm(), std::atan2((b - a).y(), (b - a).x()), 0.1, 0.05));
     const auto r = residuals_of(*cost, {place(shift + std::exp(log_scale) * (rotation * a)),
-                                        place(shift + std::exp(log_scale) * (rotation * b)), {turn}, {log_scale}});
+                                        place(shift + std::exp(log_scale) * (rotation * b)),
+                                        {turn},
+                                        {log_scale}});
     EXPECT_NEAR(r[0], 0, 1e-9);
     EXPECT_NEAR(r[1], 0, 1e-9);
   }
@@ -40,7 +42,8 @@ TEST(WallShapeCost, HasTheNumericJacobian) {
   auto random = random_stream(2, 2);
   for (int i = 0; i < 50; ++i) {
     const CostOwner cost(WallShapeCost::Create(uniform(random, 0.2, 8), uniform(random, -3, 3), 0.3, 0.1));
-    test::expect_jacobian_is_numeric(*cost, {place(any_place(random)), place(any_place(random)), {uniform(random, -3, 3)}, {0.1}});
+    test::expect_jacobian_is_numeric(
+        *cost, {place(any_place(random)), place(any_place(random)), {uniform(random, -3, 3)}, {0.1}});
   }
 }
 
@@ -82,7 +85,8 @@ TEST(PieceToWallCost, HasTheNumericJacobianForPoseAndBothCorners) {
   auto random = random_stream(2, 5);
   for (int i = 0; i < 50; ++i) {
     const CostOwner cost(PieceToWallCost::Create({any_place(random), any_place(random)}, -1, 0.1, 0.5));
-    test::expect_jacobian_is_numeric(*cost, {standing(any_pose(random)), place(any_place(random)), place(any_place(random))}, 1e-4);
+    test::expect_jacobian_is_numeric(
+        *cost, {standing(any_pose(random)), place(any_place(random)), place(any_place(random))}, 1e-4);
   }
 }
 
