@@ -94,16 +94,20 @@ class Engine::Impl {
 
   void take(const SensorItem& item) {
     const auto report = mapper_.add(item);
-    const std::lock_guard lock(core_mutex_);
-    core_.heard(robot_of(item), clock_->now());
-    if (report) core_.report(*report);
+    std::shared_ptr<const FloorView> floor;
+    {
+      const std::lock_guard lock(core_mutex_);
+      core_.heard(robot_of(item), clock_->now());
+      if (report) core_.report(*report);
+      floor = core_.floor();
+    }
+    mapper_.take(floor);
   }
 
   void hand_over_graph() {
     {
       const std::lock_guard lock(core_mutex_);
       graph_ = mapper_.graph();
-      map_maker_ = mapper_.map_maker();
       ++graph_revision_;
     }
     changed_.notify_all();
@@ -113,7 +117,6 @@ class Engine::Impl {
     int graph_done = -1, plan_done = -1;
     while (!stop.stop_requested()) {
       MergeInput input;
-      std::string map_maker;
       {
         std::unique_lock lock(core_mutex_);
         if (!changed_.wait(lock, stop,
@@ -121,12 +124,11 @@ class Engine::Impl {
           return;
         graph_done = graph_revision_, plan_done = core_.plan_revision();
         input = core_.merge_input(graph_);
-        map_maker = map_maker_;
       }
       const MergeResult result = merger_.run(input, {{}, stop});
       if (stop.stop_requested()) return;
       const std::lock_guard lock(core_mutex_);
-      core_.take(result, map_maker);
+      core_.take(result);
     }
   }
 
@@ -190,8 +192,7 @@ class Engine::Impl {
   mutable std::mutex core_mutex_;
   std::condition_variable_any changed_;
   SessionCore core_;
-  std::shared_ptr<const PoseGraph> graph_ = std::make_shared<const PoseGraph>();
-  std::string map_maker_;
+  FloorGraph graph_;
   int graph_revision_ = 0;
 
   mutable std::mutex queue_mutex_;

@@ -24,20 +24,20 @@ void Fleet::heard(const std::string& robot, Stamp now) { robot_of(robot).status.
 
 void Fleet::report(const PoseReport& report) {
   Robot& robot = robot_of(report.robot);
-  robot.T_slam_robot = report.T_slam_robot;
+  robot.T_graph_robot = report.T_graph_robot;
   robot.obstacles_robot = report.obstacles_robot;
   robot.ever_localized = robot.ever_localized || report.localized;
   robot.status.sigma_m = report.sigma_m;
   robot.status.sigma_rad = report.sigma_rad;
   robot.status.localized = report.localized;
   robot.status.speed_mps = report.speed_mps;
-  robot.status.T_map_robot = robot.T_map_slam * robot.T_slam_robot;
+  robot.status.T_map_robot = robot.T_map_graph * robot.T_graph_robot;
 }
 
-void Fleet::set_correction(const std::string& id, const Pose2& T_map_slam) {
+void Fleet::set_correction(const std::string& id, const Pose2& T_map_graph) {
   Robot& robot = robot_of(id);
-  robot.T_map_slam = T_map_slam;
-  robot.status.T_map_robot = robot.T_map_slam * robot.T_slam_robot;
+  robot.T_map_graph = T_map_graph;
+  robot.status.T_map_robot = robot.T_map_graph * robot.T_graph_robot;
 }
 
 void Fleet::stop_now(const std::string& id) {
@@ -203,10 +203,10 @@ GoalView Fleet::view(const Goal& goal, const Carrier& carrier) const {
   return view;
 }
 
-std::optional<Pose2> Fleet::T_slam_robot(const std::string& id) const {
+std::optional<Pose2> Fleet::T_graph_robot(const std::string& id) const {
   const auto it = robots_.find(id);
   if (it == robots_.end() || !it->second.ever_localized) return std::nullopt;
-  return it->second.T_slam_robot;
+  return it->second.T_graph_robot;
 }
 
 }  // namespace smokemap

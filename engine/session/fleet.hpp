@@ -35,7 +35,7 @@ struct FleetParams {
 /// A robot's own account of itself, from SLAM.
 struct PoseReport {
   std::string robot;
-  Pose2 T_slam_robot;
+  Pose2 T_graph_robot;  ///< in the frame of the floor's pose graph; a robot that did not join it: in its own
   double sigma_m = 0;
   double sigma_rad = 0;
   bool localized = false;
@@ -52,8 +52,8 @@ class Fleet {
   void heard(const std::string& robot, Stamp now);
   void report(const PoseReport& report);
   void set_map(std::shared_ptr<const CostMap> map) { map_ = std::move(map); }
-  /// The robot whose frame is the map's gets the merge's correction.
-  void set_correction(const std::string& robot, const Pose2& T_map_slam);
+  /// What the merge says about the newest poses of a robot in the graph.
+  void set_correction(const std::string& robot, const Pose2& T_map_graph);
 
   /// Ten times a second: chooses what each robot does, drives it, moves goals through their states.
   void tick(Stamp now, Whiteboard& board, const Carrier& carrier);
@@ -64,15 +64,15 @@ class Fleet {
   /// Distance and time to go of the goal that a robot drives to; zeros for others.
   GoalView view(const Goal& goal, const Carrier& carrier) const;
   /// Where SLAM has the robot now; nothing for a robot never localised.
-  std::optional<Pose2> T_slam_robot(const std::string& robot) const;
+  std::optional<Pose2> T_graph_robot(const std::string& robot) const;
 
  private:
   struct Robot {
     Robot(const std::string& id, const PilotParams& params) : pilot(params) { status.id = id; }
     RobotStatus status;
     Pilot pilot;
-    Pose2 T_slam_robot;
-    Pose2 T_map_slam;
+    Pose2 T_graph_robot;
+    Pose2 T_map_graph;
     std::vector<Point2> obstacles_robot;
     PilotOutput last;
     std::vector<Point2> avoided;  ///< frontiers that could not be reached, or were

@@ -34,7 +34,16 @@ MergedMap plan_alone(const LayoutMap& layout, const std::optional<PlanStart>& st
   return merged;
 }
 
+/// Node ids have a new meaning: what was learnt from the old ones is void.
+void Merger::start_over() {
+  acg_ = AutoCompleteGraph();
+  renderer_ = MapRenderer();
+  known_ = {};
+  has_plan_ = false;
+}
+
 void Merger::take_plan(const MergeInput& input) {
+  if (input.floor.generation != known_.floor.generation) start_over();
   const bool new_plan = input.layout != known_.layout;
   if (new_plan) {
     has_plan_ = input.layout && acg_.set_plan(input.layout->layout, input.start).ok();
@@ -57,10 +66,10 @@ void Merger::take_plan(const MergeInput& input) {
 
 std::shared_ptr<const MergedMap> Merger::merge(const MergeInput& input, const Progress& progress,
                                                std::string& complaint) {
-  if (input.graph->nodes.empty())
+  if (input.floor.graph->nodes.empty())
     return std::make_shared<const MergedMap>(input.layout ? plan_alone(input.layout->layout, input.start)
                                                           : MergedMap{});
-  auto merged = acg_.update(*input.graph, progress);
+  auto merged = acg_.update(*input.floor.graph, progress);
   if (merged) return std::make_shared<const MergedMap>(std::move(*merged));
   complaint = merged.error().message;
   return last_;
@@ -75,11 +84,13 @@ MergeResult Merger::run(const MergeInput& input, const Progress& progress) {
   result.merged = last_ = merged;
   std::vector<Pose2> T_map_nodes;
   for (const StampedPose& pose : merged->trajectory) T_map_nodes.push_back(pose.T_map_robot);
-  const PoseGraph& graph = *input.graph;
+  const PoseGraph& graph = *input.floor.graph;
   for (std::size_t i = T_map_nodes.size(); i < graph.nodes.size(); ++i)
     T_map_nodes.push_back(graph.nodes[i].T_map_robot);
   T_map_nodes.resize(graph.nodes.size());
-  if (!graph.nodes.empty()) result.T_map_slam = T_map_nodes.back() * graph.nodes.back().T_map_robot.inverse();
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i)
+    result.T_map_graph[graph.nodes[i].robot] = T_map_nodes[i] * graph.nodes[i].T_map_robot.inverse();
+  result.generation = input.floor.generation;
   renderer_.update(graph, T_map_nodes);
   result.sensed = std::make_shared<const OccupancyGrid>(renderer_.occupancy());
   const LayoutMap* layout = input.layout ? &input.layout->layout : nullptr;

@@ -9,6 +9,7 @@
 #include "core/progress.hpp"
 #include "navigation/cost_map.hpp"
 #include "session/commands.hpp"
+#include "session/graph_union.hpp"
 #include "session/snapshot.hpp"
 #include "slam/render_map.hpp"
 
@@ -16,7 +17,7 @@ namespace smokemap {
 
 /// Everything the merge needs, as immutable values.
 struct MergeInput {
-  std::shared_ptr<const PoseGraph> graph;  ///< never null, may be empty
+  FloorGraph floor;  ///< of all robots; may be empty
   std::shared_ptr<const LayoutView> layout;
   std::optional<PlanStart> start;
   std::map<std::string, AddAnchor> anchors;
@@ -26,9 +27,10 @@ struct MergeInput {
 struct MergeResult {
   std::shared_ptr<const MergedMap> merged;
   std::shared_ptr<const OccupancyGrid> sensed;
-  std::shared_ptr<const CostMap> cost_map;  ///< null when nothing is known yet
-  Pose2 T_map_slam;                         ///< correction of the newest node; what comes after it moves along
-  std::string complaint;                    ///< the last solve gave no usable answer; the map is the one before
+  std::shared_ptr<const CostMap> cost_map;   ///< null when nothing is known yet
+  int generation = 0;                        ///< of the graph that this was made from
+  std::map<std::string, Pose2> T_map_graph;  ///< per robot: correction of its newest node; what comes after moves along
+  std::string complaint;                     ///< the last solve gave no usable answer; the map is the one before
 };
 
 /// Plan and pose graph -> merged map, occupancy, ground for navigation. Slow (up to a second): runs beside the engine.
@@ -38,6 +40,7 @@ class Merger {
   MergeResult run(const MergeInput& input, const Progress& progress = {});
 
  private:
+  void start_over();
   void take_plan(const MergeInput& input);
   std::shared_ptr<const MergedMap> merge(const MergeInput& input, const Progress& progress, std::string& complaint);
 

@@ -3,6 +3,10 @@
 namespace smokemap {
 namespace {
 
+/// Of a finger on a plan.
+constexpr double kStartSigmaM = 0.3;
+constexpr double kStartSigmaRad = 0.08;
+
 std::shared_ptr<const SketchView> empty_sketch() {
   static const auto kEmpty = std::make_shared<const SketchView>();
   return kEmpty;
@@ -17,7 +21,7 @@ Result<Ok> SessionCore::apply(const Command& command, Origin origin) {
   const auto layout_before = board_.layout;
   const int frame_before = board_.revisions.layout_frame;
   if (const auto ok = board_.apply(command); !ok) return ok;
-  if (board_.revisions.layout_frame != frame_before) start_.reset(), start_is_old_ = false;
+  if (board_.revisions.layout_frame != frame_before) forget_starts();
   if (const auto* start = std::get_if<SetStart>(&command)) return note_start(*start, origin);
   if (const auto* stop = std::get_if<EmergencyStop>(&command); stop && stop->engaged) fleet_.stop_now(stop->robot);
   if (const auto* set = std::get_if<PlacePoi>(&command); set && origin == Origin::kHistory) {
@@ -43,24 +47,42 @@ Result<Ok> SessionCore::note_start(const SetStart& start, Origin origin) {
   const Point2 p_layout = board_.layout->layout.frame().to_metres(start.p_layout_px);
   const Pose2 T_layout_robot(p_layout, start.heading_rad);
   // The robot may have moved since its first pose, which is the origin of the map.
-  const Pose2 T_map_robot = fleet_.T_slam_robot(start.robot).value_or(Pose2());
-  start_ = PlanStart{T_layout_robot * T_map_robot.inverse(), 0.3, 0.08};
+  const Pose2 T_graph_robot = fleet_.T_graph_robot(start.robot).value_or(Pose2());
+  starts_[start.robot] = PlanStart{T_layout_robot * T_graph_robot.inverse(), kStartSigmaM, kStartSigmaRad};
+  newest_start_ = start.robot;
   start_is_old_ = false;
+  FloorView view = *floor_;
+  StandHint& hint = view.hints[start.robot];
+  hint = {T_layout_robot, kStartSigmaM, kStartSigmaRad, hint.revision + 1};
+  floor_ = std::make_shared<const FloorView>(std::move(view));
   return Ok{};
 }
 
 void SessionCore::tick(Stamp now) { fleet_.tick(now, board_, Carrier(board_, *merged_, sketch_)); }
 
-MergeInput SessionCore::merge_input(std::shared_ptr<const PoseGraph> graph) const {
-  return {std::move(graph), board_.layout, start_, board_.anchors, board_.wall_verdicts};
+void SessionCore::forget_starts() {
+  starts_.clear();
+  start_is_old_ = false;
+  FloorView view = *floor_;
+  view.hints.clear();
+  floor_ = std::make_shared<const FloorView>(std::move(view));
 }
 
-void SessionCore::take(const MergeResult& result, const std::string& map_maker) {
+MergeInput SessionCore::merge_input(FloorGraph floor) const {
+  const auto& nodes = floor.graph->nodes;
+  const auto start = starts_.find(nodes.empty() ? newest_start_ : nodes.front().robot);
+  MergeInput input{std::move(floor), board_.layout, std::nullopt, board_.anchors, board_.wall_verdicts};
+  if (start != starts_.end()) input.start = start->second;
+  return input;
+}
+
+void SessionCore::take(const MergeResult& result) {
   merged_ = result.merged;
   sensed_ = result.sensed;
   merge_complaint_ = result.complaint;
   fleet_.set_map(result.cost_map);
-  if (!map_maker.empty()) fleet_.set_correction(map_maker, result.T_map_slam);
+  for (const auto& [robot, T_map_graph] : result.T_map_graph) fleet_.set_correction(robot, T_map_graph);
+  floor_ = std::make_shared<const FloorView>(FloorView{merged_, result.generation, floor_->hints});
 }
 
 SessionCore::SketchOrder SessionCore::sketch_order() const {
@@ -75,7 +97,7 @@ std::optional<Point2> SessionCore::place_on_plan(const Point2& p_map) const {
 
 std::vector<Alert> SessionCore::alerts() const {
   std::vector<Alert> alerts;
-  if (start_is_old_ && !start_)
+  if (start_is_old_ && starts_.empty())
     alerts.push_back(
         {"old-start", "Where the robot stands on the plan is only known from before the restart: say it again.", true});
   if (board_.layout && !board_.layout->layout.scale)

@@ -6,6 +6,7 @@
 
 #include "session/carrier.hpp"
 #include "session/fleet.hpp"
+#include "session/mapper.hpp"
 #include "session/merger.hpp"
 #include "session/sketch_reader.hpp"
 #include "session/snapshot.hpp"
@@ -28,9 +29,11 @@ class SessionCore {
   /// Steers the robots.
   void tick(Stamp now);
 
-  /// @param graph  of the map-making robot; @param map_maker its id, empty while there is none
-  MergeInput merge_input(std::shared_ptr<const PoseGraph> graph) const;
-  void take(const MergeResult& result, const std::string& map_maker);
+  /// Where the plan starts is what was said of the robot that comes first in the graph.
+  MergeInput merge_input(FloorGraph floor) const;
+  void take(const MergeResult& result);
+  /// For the mapper; the same object until something in it changed.
+  std::shared_ptr<const FloorView> floor() const { return floor_; }
   /// Counts up whenever the plan, its start, anchors or judgements changed.
   int plan_revision() const { return board_.revisions.plan; }
 
@@ -48,6 +51,7 @@ class SessionCore {
   std::optional<Point2> place_on_plan(const Point2& p_map) const;
 
  private:
+  void forget_starts();
   Result<Ok> note_start(const SetStart& start, Origin origin);
   std::vector<Alert> alerts() const;
 
@@ -57,8 +61,10 @@ class SessionCore {
   std::shared_ptr<const MergedMap> merged_ = std::make_shared<const MergedMap>();
   std::shared_ptr<const OccupancyGrid> sensed_ = std::make_shared<const OccupancyGrid>();
   SketchReading sketch_;
-  std::optional<PlanStart> start_;
-  bool start_is_old_ = false;  ///< known only from the log: the robot may stand elsewhere by now
+  std::shared_ptr<const FloorView> floor_ = std::make_shared<const FloorView>();  ///< hints of people in it too
+  std::map<std::string, PlanStart> starts_;  ///< per robot: where its graph starts if it is the first in the graph
+  std::string newest_start_;                 ///< the robot of which a start was said last
+  bool start_is_old_ = false;                ///< known only from the log: the robot may stand elsewhere by now
   std::string merge_complaint_;
 };
 

@@ -69,9 +69,10 @@ class Mission {
     const auto report = mapper_.add(item);
     core_.heard(robot_.name(), robot_.now());
     if (report) core_.report(*report);
+    mapper_.take(core_.floor());
   }
 
-  void merge() { core_.take(merger_.run(core_.merge_input(mapper_.graph())), mapper_.map_maker()); }
+  void merge() { core_.take(merger_.run(core_.merge_input(mapper_.graph()))); }
 
   void ask_for_far_room() {
     asked_ = true;

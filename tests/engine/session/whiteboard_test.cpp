@@ -163,7 +163,7 @@ MergeResult free_square() {
 PoseReport standing_at(const Pose2& pose) {
   PoseReport report;
   report.robot = "robot1";
-  report.T_slam_robot = pose;
+  report.T_graph_robot = pose;
   report.localized = true;
   return report;
 }
@@ -175,7 +175,7 @@ struct Scene {
   Stamp now = 0;
 
   Scene() {
-    core.take(free_square(), "robot1");
+    core.take(free_square());
     step();
   }
   void step() {
@@ -245,10 +245,10 @@ TEST(SessionCore, AnOldStartIsNotBelievedAfterARestart) {
   Scene scene;
   ASSERT_THAT(scene.core.apply(SetLayout{"plan", square_plan()}, Origin::kHistory), test::IsOk());
   ASSERT_THAT(scene.core.apply(SetStart{"robot1", {50, 50}, 0}, Origin::kHistory), test::IsOk());
-  EXPECT_FALSE(scene.core.merge_input(std::make_shared<const PoseGraph>()).start);
+  EXPECT_FALSE(scene.core.merge_input(FloorGraph{}).start);
   ASSERT_EQ(scene.core.snapshot(0).alerts.size(), 1u);
   ASSERT_THAT(scene.core.apply(SetStart{"robot1", {50, 50}, 0}, Origin::kLive), test::IsOk());
-  EXPECT_TRUE(scene.core.merge_input(std::make_shared<const PoseGraph>()).start);
+  EXPECT_TRUE(scene.core.merge_input(FloorGraph{}).start);
   EXPECT_TRUE(scene.core.snapshot(0).alerts.empty());
 }
 
@@ -258,7 +258,7 @@ TEST(SessionCore, AStartGivenWhileDrivingIsCarriedBackToTheFirstPose) {
   scene.step();
   ASSERT_THAT(scene.core.apply(SetLayout{"plan", square_plan()}, Origin::kLive), test::IsOk());
   ASSERT_THAT(scene.core.apply(SetStart{"robot1", {50, 50}, 0}, Origin::kLive), test::IsOk());
-  const auto start = scene.core.merge_input(std::make_shared<const PoseGraph>()).start;
+  const auto start = scene.core.merge_input(FloorGraph{}).start;
   ASSERT_TRUE(start);
   const Pose2 T_layout_now = start->T_layout_robot * Pose2(2, 0, kPi / 2);
   EXPECT_THAT(T_layout_now, test::IsNear(Pose2(square_plan().frame().to_metres({50, 50}), 0), 1e-9, 1e-9));
