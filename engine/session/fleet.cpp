@@ -1,10 +1,17 @@
 #include "session/fleet.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/check.hpp"
 
 namespace smokemap {
+namespace {
+
+constexpr double kRobotsMeetM = 3.0;  // farther away nobody has to give way
+constexpr int kRobotOutline = 36;     // points on its circle: every 6 cm
+
+}  // namespace
 
 Result<Ok> FleetParams::validate() const {
   if (const auto valid = pilot.validate(); !valid) return valid.error();
@@ -13,6 +20,7 @@ Result<Ok> FleetParams::validate() const {
       .in_range("lost_after_s", lost_after_s, stale_after_s, 3600)
       .positive("look_again_s", look_again_s)
       .in_range("explore_pause_s", explore_pause_s, 0, 60)
+      .in_range("robot_radius_m", robot_radius_m, 0, 5)
       .result();
 }
 
@@ -78,7 +86,7 @@ void Fleet::steer(Robot& robot, Stamp now, Whiteboard& board, const Carrier& car
   robot.pilot.set_map(map_);
   Goal* goal = next_goal(robot, board, carrier);
   take_target(robot, now, goal, carrier, status.exploring);
-  robot.last = robot.pilot.step(now, status.T_map_robot, robot.obstacles_robot);
+  robot.last = robot.pilot.step(now, status.T_map_robot, obstacles_of(robot));
   commands_->drive(status.id, robot.last.twist.speed_mps, robot.last.twist.turn_rate_radps);
   settle_goal(robot, now, goal, carrier);
   status.path_map = robot.last.path.points;
@@ -89,6 +97,29 @@ void Fleet::steer(Robot& robot, Stamp now, Whiteboard& board, const Carrier& car
     robot.pilot.set_target(std::nullopt);
     robot.idle_since = now;
   }
+}
+
+std::vector<Point2> Fleet::avoided_by(const Robot& robot) const {
+  std::vector<Point2> avoided = robot.avoided;
+  for (const auto& [id, other] : robots_)
+    if (&other != &robot && other.status.link != LinkQuality::kLost && !other.status.stopped && other.pilot.target())
+      avoided.push_back(*other.pilot.target());
+  return avoided;
+}
+
+std::vector<Point2> Fleet::obstacles_of(const Robot& robot) const {
+  std::vector<Point2> obstacles = robot.obstacles_robot;
+  const Pose2 T_robot_map = robot.status.T_map_robot.inverse();
+  for (const auto& [id, other] : robots_) {
+    if (&other == &robot || !other.ever_localized) continue;
+    const Point2 p_robot = T_robot_map * other.status.T_map_robot.translation();
+    if (p_robot.norm() > kRobotsMeetM) continue;
+    for (int i = 0; i < kRobotOutline; ++i) {
+      const double angle = 2 * kPi * i / kRobotOutline;
+      obstacles.push_back(p_robot + params_.robot_radius_m * Point2(std::cos(angle), std::sin(angle)));
+    }
+  }
+  return obstacles;
 }
 
 Goal* Fleet::next_goal(Robot& robot, Whiteboard& board, const Carrier& carrier) {
@@ -126,7 +157,7 @@ void Fleet::take_target(Robot& robot, Stamp now, Goal* goal, const Carrier& carr
   if (robot.pilot.target() || !map_ || to_seconds(now - robot.idle_since) < params_.explore_pause_s) return;
   robot.idle_since = now;
   if (const auto frontier =
-          best_frontier(*map_, robot.status.T_map_robot.translation(), robot.avoided, params_.frontier))
+          best_frontier(*map_, robot.status.T_map_robot.translation(), avoided_by(robot), params_.frontier))
     robot.pilot.set_target(frontier->target);
   else
     robot.status.note = "everything that can be reached was seen";
@@ -153,7 +184,7 @@ bool Fleet::look_for_way(Robot& robot, Stamp now, const Goal& goal, const Point2
   }
   if (robot.detour && !there) return true;
   if (there && robot.pilot.target()) robot.avoided.push_back(*robot.pilot.target());
-  const auto frontier = best_frontier(*map_, here, robot.avoided, params_.frontier, p_map);
+  const auto frontier = best_frontier(*map_, here, avoided_by(robot), params_.frontier, p_map);
   robot.detour = frontier.has_value();
   robot.last_detour = PilotState::kDriving;
   robot.pilot.set_target(frontier ? frontier->target : p_map);

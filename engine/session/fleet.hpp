@@ -29,6 +29,7 @@ struct FleetParams {
   double lost_after_s = 5.0;
   double look_again_s = 2.0;     ///< between two searches for a way that was not known
   double explore_pause_s = 1.0;  ///< after a place was reached, before the next is chosen
+  double robot_radius_m = 0.35;  ///< of another robot, which the map does not show
   Result<Ok> validate() const;
 };
 
@@ -86,6 +87,10 @@ class Fleet {
   void steer(Robot& robot, Stamp now, Whiteboard& board, const Carrier& carrier);
   /// The goal to drive to now; refuses, with the reason, those that have no place.
   Goal* next_goal(Robot& robot, Whiteboard& board, const Carrier& carrier);
+  /// Frontiers that this robot gave up or saw, and those that others drive to.
+  std::vector<Point2> avoided_by(const Robot& robot) const;
+  /// What its sensors see, and the other robots: two lidars at one height do not see each other's masts.
+  std::vector<Point2> obstacles_of(const Robot& robot) const;
   void take_target(Robot& robot, Stamp now, Goal* goal, const Carrier& carrier, bool explores);
   void take_goal(Robot& robot, Goal& goal, const Point2& p_map);
   /// A plan that is wrong in a part nobody saw may show no way where there is one: drive to where more can be seen,

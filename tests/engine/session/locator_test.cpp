@@ -21,8 +21,8 @@ std::vector<Segment2> odd_square() {
   return walls;
 }
 
-struct Place {
-  explicit Place(const std::vector<Segment2>& segments) {
+struct WalledPlace {
+  explicit WalledPlace(const std::vector<Segment2>& segments) {
     std::vector<WorldSegment> true_walls;
     for (const Segment2& s : segments) true_walls.push_back({s}), walls.push_back({s, 0});
     world = SegmentWorld(true_walls);
@@ -39,7 +39,7 @@ struct Place {
 };
 
 /// Round and round on a circle of 1.3 m; true until the locator is sure, or `steps` are over.
-Pose2 circle(Locator& locator, const Place& place, int steps) {
+Pose2 circle(Locator& locator, const WalledPlace& place, int steps) {
   Pose2 pose(3, 1.6, 0);
   for (int i = 0; i < steps && !locator.sure(); ++i) {
     const Pose2 next = pose * Pose2(0.3, 0, 0.3 / 1.3);
@@ -50,7 +50,7 @@ Pose2 circle(Locator& locator, const Place& place, int steps) {
 }
 
 TEST(Locator, IsSureSoonWhenAPersonSaidWhereTheRobotIs) {
-  const Place place(odd_square());
+  const WalledPlace place(odd_square());
   Locator locator;
   locator.set_walls(place.walls);
   locator.start_at(Pose2(3.2, 1.5, 0.05), 0.3, 0.1);
@@ -60,7 +60,7 @@ TEST(Locator, IsSureSoonWhenAPersonSaidWhereTheRobotIs) {
 }
 
 TEST(Locator, FindsTheRobotWithoutAHintAfterSomeMetres) {
-  const Place place(odd_square());
+  const WalledPlace place(odd_square());
   int found = 0, wrong = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Locator locator({}, seed);
@@ -76,7 +76,7 @@ TEST(Locator, FindsTheRobotWithoutAHintAfterSomeMetres) {
 }
 
 TEST(Locator, DoesNotChooseBetweenPlacesThatLookAlike) {
-  const Place place(bare_square());
+  const WalledPlace place(bare_square());
   int sure = 0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     Locator locator({}, seed);
@@ -89,7 +89,7 @@ TEST(Locator, DoesNotChooseBetweenPlacesThatLookAlike) {
 }
 
 TEST(Locator, IsNotSureInAnotherBuilding) {
-  const Place place(odd_square());
+  const WalledPlace place(odd_square());
   std::vector<LocalizerWall> other;
   for (int i = 0; i < 6; ++i) other.push_back({{{2.3 * i, 9}, {2.3 * i + 3, 15}}, 0.1});
   Locator locator;

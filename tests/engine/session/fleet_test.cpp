@@ -1,0 +1,157 @@
+#include "session/fleet.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/session/scene.hpp"
+#include "tests/support/near.hpp"
+#include "tests/support/result_matchers.hpp"
+
+namespace smokemap {
+namespace {
+
+using test::goal_at;
+using test::Recorder;
+using test::standing_at;
+
+/// A free room of 10 m whose left and right thirds nobody saw; walls around. Two robots in the middle.
+std::shared_ptr<const CostMap> half_seen_room() {
+  GridFrame frame;
+  frame.resolution_m = 0.1;
+  frame.origin = {-6, -6};
+  frame.width_cells = frame.height_cells = 120;
+  std::vector<Ground> ground(static_cast<std::size_t>(frame.width_cells) * 120, Ground::kBlocked);
+  for (int y = 10; y < 110; ++y)
+    for (int x = 10; x < 110; ++x)
+      ground[static_cast<std::size_t>(y) * 120 + static_cast<std::size_t>(x)] =
+          x < 40 || x >= 80 ? Ground::kPlanned : Ground::kFree;
+  return std::make_shared<const CostMap>(frame, std::move(ground), CostMapParams{});
+}
+
+struct Pair {
+  std::shared_ptr<Recorder> recorder = std::make_shared<Recorder>();
+  Fleet fleet{FleetParams{}, recorder};
+  Whiteboard board;
+  MergedMap merged;
+  SketchReading sketch;
+  std::map<std::string, Pose2> poses;
+  Stamp now = 0;
+
+  explicit Pair(std::map<std::string, Pose2> at) : poses(std::move(at)) { fleet.set_map(half_seen_room()); }
+  void step(int steps = 1) {
+    for (int i = 0; i < steps; ++i) {
+      for (auto& [robot, pose] : poses) {
+        fleet.heard(robot, now);
+        fleet.report(standing_at(pose, robot));
+      }
+      fleet.tick(now, board, Carrier(board, merged, sketch));
+      for (auto& [robot, pose] : poses) {
+        const Twist twist = recorder->last[robot];
+        pose = pose * Pose2(twist.speed_mps * 0.1, 0, twist.turn_rate_radps * 0.1);
+      }
+      now += from_seconds(0.1);
+    }
+  }
+  const RobotStatus status(const std::string& robot) const {
+    for (const RobotStatus& s : fleet.status())
+      if (s.id == robot) return s;
+    return {};
+  }
+};
+
+TEST(Fleet, TwoExplorersGoDifferentWays) {
+  Pair pair({{"a", Pose2(0, 0.5, 0)}, {"b", Pose2(0, -0.5, 0)}});
+  for (const char* robot : {"a", "b"}) ASSERT_THAT(pair.board.apply(SetExploring{robot, true}), test::IsOk());
+  pair.step(30);
+  const auto a = pair.status("a").path_map, b = pair.status("b").path_map;
+  ASSERT_FALSE(a.empty());
+  ASSERT_FALSE(b.empty());
+  EXPECT_LT(a.back().x() * b.back().x(), 0) << "one to the left, one to the right";
+}
+
+TEST(Fleet, ARobotStopsForAnotherOneThatItsSensorsDoNotShow) {
+  Pair pair({{"a", Pose2(0, 0, 0)}, {"b", Pose2(1.2, 0, 0)}});
+  SetGoal set = goal_at("g", {2.5, 0});
+  set.goal.robot = "a";
+  ASSERT_THAT(pair.board.apply(set), test::IsOk());
+  double nearest = 10;
+  for (int i = 0; i < 60; ++i) {
+    pair.step();
+    nearest = std::min(nearest, (pair.poses.at("a").translation() - pair.poses.at("b").translation()).norm());
+  }
+  EXPECT_GT(nearest, FleetParams{}.robot_radius_m + 0.2) << "its own radius is 0.25 m";
+}
+
+TEST(Fleet, GoalsAreDrivenToInTheOrderInWhichTheyWereGiven) {
+  Pair pair({{"robot1", Pose2()}});
+  ASSERT_THAT(pair.board.apply(goal_at("first", {1.5, 0})), test::IsOk());
+  ASSERT_THAT(pair.board.apply(goal_at("second", {-1.5, 0})), test::IsOk());
+  pair.step(5);
+  EXPECT_EQ(pair.status("robot1").goal_id, "first");
+  EXPECT_EQ(pair.board.find_goal("second")->state, GoalState::kQueued);
+  for (int i = 0; i < 400 && !is_final(pair.board.find_goal("second")->state); ++i) pair.step();
+  EXPECT_EQ(pair.board.find_goal("first")->state, GoalState::kArrived);
+  EXPECT_EQ(pair.board.find_goal("second")->state, GoalState::kArrived);
+  EXPECT_LT((pair.poses.at("robot1").translation() - Point2(-1.5, 0)).norm(), 0.35);
+}
+
+TEST(Fleet, ACancelledGoalLetsTheRobotStand) {
+  Pair pair({{"robot1", Pose2()}});
+  ASSERT_THAT(pair.board.apply(goal_at("g", {3, 0})), test::IsOk());
+  pair.step(15);
+  ASSERT_GT(pair.recorder->last["robot1"].speed_mps, 0);
+  ASSERT_THAT(pair.board.apply(CancelGoal{"g"}), test::IsOk());
+  pair.step(2);
+  EXPECT_EQ(pair.recorder->last["robot1"].speed_mps, 0);
+  EXPECT_TRUE(pair.status("robot1").goal_id.empty());
+}
+
+TEST(Fleet, TimeAndWayToGoShrink) {
+  Pair pair({{"robot1", Pose2()}});
+  ASSERT_THAT(pair.board.apply(goal_at("g", {4, 0})), test::IsOk());
+  pair.step(5);
+  const Carrier carrier(pair.board, pair.merged, pair.sketch);
+  const GoalView early = pair.fleet.view(*pair.board.find_goal("g"), carrier);
+  EXPECT_NEAR(early.remaining_m, 4, 0.6);
+  EXPECT_GT(early.eta_s, early.remaining_m / FollowerParams{}.max_speed_mps)
+      << "nobody drives at top speed all the way";
+  pair.step(40);
+  EXPECT_LT(pair.fleet.view(*pair.board.find_goal("g"), carrier).remaining_m, early.remaining_m - 1);
+}
+
+TEST(Fleet, ARobotThatNeverKnewWhereItIsIsNotDriven) {
+  Pair pair({{"robot1", Pose2()}});
+  PoseReport lost = standing_at(Pose2(), "robot2");
+  lost.localized = false;
+  ASSERT_THAT(pair.board.apply(SetExploring{"robot2", true}), test::IsOk());
+  pair.fleet.heard("robot2", 0);
+  pair.fleet.report(lost);
+  pair.step(20);
+  EXPECT_FALSE(pair.recorder->last.contains("robot2"));
+  EXPECT_EQ(pair.status("robot2").note, "the robot does not know where it is yet");
+  EXPECT_FALSE(pair.fleet.T_graph_robot("robot2"));
+}
+
+TEST(Fleet, LinksGetOldByTheClockAlone) {
+  Pair pair({{"robot1", Pose2()}});
+  pair.step();
+  const auto after = [&](double seconds) {
+    pair.fleet.tick(from_seconds(seconds), pair.board, Carrier(pair.board, pair.merged, pair.sketch));
+    return pair.status("robot1").link;
+  };
+  EXPECT_EQ(after(0.9), LinkQuality::kFresh);
+  EXPECT_EQ(after(1.1), LinkQuality::kStale);
+  EXPECT_EQ(after(5.1), LinkQuality::kLost);
+}
+
+TEST(FleetParams, NameTheirFirstFieldOutOfRange) {
+  FleetParams params;
+  params.lost_after_s = 0.5 * params.stale_after_s;
+  EXPECT_THAT(params.validate(), test::Fails(Errc::kInvalidArgument));
+  params = {};
+  params.robot_radius_m = -1;
+  EXPECT_THAT(params.validate(), test::Fails(Errc::kInvalidArgument));
+  EXPECT_THAT(FleetParams{}.validate(), test::IsOk());
+}
+
+}  // namespace
+}  // namespace smokemap
