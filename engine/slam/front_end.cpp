@@ -30,6 +30,7 @@ FrontEnd::Tracked FrontEnd::track(const ScanPoints& points, const PredictedStep&
 
   const Pose2 predicted = T_track_robot_ * step.T_before_now;
   blind_covariance_ += spread(step);
+  predicted_covariance_ += spread(step);
   if (too_few) {
     T_track_robot_ = predicted;
     return answer(ScanFate::kTooFewPoints, 0);
@@ -117,6 +118,7 @@ void FrontEnd::keep(const ScanPoints& points) {
   nodes_.push_back({T_track_robot_, points.surface});
   while (nodes_.size() > static_cast<std::size_t>(params_.front_end.map_nodes)) nodes_.pop_front();
   blind_covariance_.setZero();
+  predicted_covariance_.setZero();
   if (++nodes_since_rebuild_ >= kRebuildEveryNodes || !map_.covers(T_track_robot_.translation(), 0.7 * kMapHalfSize_m))
     rebuild_map();
   else
@@ -143,9 +145,11 @@ FrontEnd::Tracked FrontEnd::begin_piece(const ScanPoints& points, ScanFate fate)
   return tracked;
 }
 
+/// The way since the last node as predicted, and the match. Where a corridor says nothing along itself the first
+/// decides.
 Eigen::Matrix3d FrontEnd::match_covariance(const ScanAlignment& alignment) const {
-  Eigen::Matrix3d information = params_.graph.pair_information * alignment.information;
-  information.diagonal() += Eigen::Vector3d(4.0, 4.0, 4.0);  // nothing is less certain than half a metre after a match
+  const Eigen::Matrix3d information =
+      params_.graph.pair_information * alignment.information + Eigen::Matrix3d(predicted_covariance_.inverse());
   return information.inverse();
 }
 

@@ -63,6 +63,7 @@ class FrontEnd {
   Pose2 T_track_robot_;
   Eigen::Matrix3d blind_covariance_ =
       Eigen::Matrix3d::Zero();  ///< of predicted steps since the last match, track frame
+  Eigen::Matrix3d predicted_covariance_ = Eigen::Matrix3d::Zero();  ///< of predicted steps since the last node
   int poor_in_a_row_ = 0;
   double usual_score_ = 0;
   bool started_ = false;

@@ -1,5 +1,6 @@
 #include "slam/loop_closer.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -20,6 +21,19 @@ constexpr std::size_t kSearchPoints = 200;
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
+/// Along the longest axis of the ellipse of positions.
+double largest_sigma_m(const Eigen::Matrix3d& covariance) {
+  const double half_gap = std::hypot(0.5 * (covariance(0, 0) - covariance(1, 1)), covariance(0, 1));
+  return std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)) + half_gap);
+}
+
+/// How many standard deviations a correction of a node's pose is.
+double sigmas_of(const Pose2& T_map_before, const Pose2& T_map_after, const Eigen::Matrix3d& covariance) {
+  Eigen::Vector3d moved = T_map_after.vector() - T_map_before.vector();
+  moved.z() = wrap_angle(moved.z());
+  return std::sqrt(std::max(0.0, moved.dot(covariance.ldlt().solve(moved))));
+}
+
 }  // namespace
 
 LoopCloser::LoopCloser(const SlamParams& params) : params_(params), target_(params.front_end.cell_m) {}
@@ -37,16 +51,20 @@ LoopCloser::Found LoopCloser::close(const PoseGraph& graph, const NodeScans& sca
 std::vector<LoopCloser::Candidate> LoopCloser::candidates(const PoseGraph& graph, const NodeScans& scans,
                                                           int node) const {
   const LoopParams& limits = params_.loops;
-  const std::vector<double> distance = graph_distances(graph, scans, node, 1.0);
+  const std::vector<GraphDistance> distance = graph_distances(graph, scans, node, 1.0);
   const Point2 here = graph.nodes[index(node)].T_map_robot.translation();
   std::vector<std::pair<double, Candidate>> near;
   for (int j = 0; j < node; ++j) {
-    const double way = std::min(distance[index(j)], scans.way_m[index(node)] - scans.way_m[index(j)]);
+    const double way = std::min(distance[index(j)].way_m, scans.way_m[index(node)] - scans.way_m[index(j)]);
     if (way < limits.least_way_m) continue;
-    const double radius = std::min(limits.search_most_m, limits.search_base_m + limits.drift_share * way);
+    Candidate candidate{j, 0, 0, distance[index(j)].covariance_at(here)};
+    const double sigma_m = limits.sigma_base_m + limits.drift_share * way, sigma_rad = limits.sigma_base_rad;
+    candidate.covariance.diagonal() += Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad);
+    candidate.radius_m = std::min(limits.search_most_m, limits.within_sigmas * largest_sigma_m(candidate.covariance));
+    candidate.half_rad = std::min(limits.search_rad, limits.within_sigmas * std::sqrt(candidate.covariance(2, 2)));
     const double away = (graph.nodes[index(j)].T_map_robot.translation() - here).norm();
-    if (away > radius + 2.0) continue;
-    near.emplace_back(away / (radius + 2.0), Candidate{j, radius, std::min(limits.search_rad, 0.15 + 0.01 * way)});
+    if (away > candidate.radius_m + 2.0) continue;
+    near.emplace_back(away / (candidate.radius_m + 2.0), candidate);
   }
   std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Candidate> chosen;
@@ -79,6 +97,8 @@ bool LoopCloser::try_candidate(const PoseGraph& graph, const NodeScans& scans, i
   ++found.rejected;  // until it has passed everything
   if (coarse->runner_up_score > limits.unique_within * coarse->score) return false;
   const ScanAlignment fine = align(joint, target_, coarse->T_map_robot, params_.align);
+  if (sigmas_of(graph.nodes[index(node)].T_map_robot, fine.T_map_robot, candidate.covariance) > limits.within_sigmas)
+    return false;
   if (fine.score < limits.least_align_score || !singles_agree(graph, scans, node, fine.T_map_robot)) return false;
   const Pose2& T_map_old = graph.nodes[index(candidate.node)].T_map_robot;
   const auto sqrt_info = edge_sqrt_information(params_.graph.pair_information * fine.information, T_map_old.heading(),

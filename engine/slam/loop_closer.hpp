@@ -8,8 +8,10 @@
 namespace smokemap {
 
 /// Finds where a node sees what much older nodes saw. The last few nodes are searched as one scan, by branch and bound,
-/// inside a window that grows with the way through the graph between the two visits; a find counts only if it fits
-/// well, fits in one place only, and if single scans of the group, matched alone, agree with it.
+/// inside a window that grows with the error that the way through the graph between the two visits can have gathered; a
+/// find counts only if it fits well, fits in one place only, lies where that error can have led, and if single scans of
+/// the group, matched alone, agree with it. Offices are built alike: a perfect fit one room farther on is refused when
+/// the way between was measured too well for it.
 class LoopCloser {
  public:
   explicit LoopCloser(const SlamParams& params);
@@ -27,6 +29,7 @@ class LoopCloser {
     int node = 0;
     double radius_m = 0;
     double half_rad = 0;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the searching node's pose when `node` is held
   };
   std::vector<Candidate> candidates(const PoseGraph& graph, const NodeScans& scans, int node) const;
   bool try_candidate(const PoseGraph& graph, const NodeScans& scans, int node, const Candidate& candidate,

@@ -18,9 +18,19 @@ struct NodeScans {
 Result<Eigen::Matrix3d> edge_sqrt_information(const Eigen::Matrix3d& information_map, double heading, double sigma_m,
                                               double sigma_rad);
 
-/// Length of the shortest way through the graph from one node to every other: what drift grows with. Edges count by the
-/// way driven between their ends, loops and matches between visits as `jump_m`; rejected edges not at all.
-/// Unreached nodes get infinity. Cost O(edges log nodes).
-std::vector<double> graph_distances(const PoseGraph& graph, const NodeScans& scans, int from, double jump_m);
+/// How far apart two nodes are in the graph, and how far their relative pose may be wrong.
+struct GraphDistance {
+  double way_m = 0;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();  ///< about the map's origin: x, y, heading of a rigid displacement
+
+  /// Covariance of the other node's pose (x, y, heading; map frame) when the first is held, at the place `p_map`.
+  Eigen::Matrix3d covariance_at(const Point2& p_map) const;
+};
+
+/// The shortest way through the graph from one node to every other: what drift grows with. Edges count by the way
+/// driven between their ends, loops and matches between visits as `jump_m`; rejected edges not at all. The covariances
+/// of the edges on that way are summed as displacements of everything behind them, which is what they are: an error of
+/// heading moves far nodes more. Unreached nodes get an infinite way. Cost O(edges log nodes).
+std::vector<GraphDistance> graph_distances(const PoseGraph& graph, const NodeScans& scans, int from, double jump_m);
 
 }  // namespace smokemap

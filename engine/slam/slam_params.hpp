@@ -59,8 +59,10 @@ struct FrontEndParams {
 struct LoopParams {
   double search_every_m = 0.8;  ///< way between nodes that search
   double least_way_m = 6.0;     ///< way driven between two ends of a loop
-  double drift_share = 0.04;    ///< growth of the search radius with the way driven
-  double search_base_m = 1.0;
+  double within_sigmas = 3.5;   ///< a loop may correct the graph's own error by this much
+  double drift_share = 0.01;    ///< error that edges do not own up to, a metre of way ...
+  double sigma_base_m = 0.15;   ///< ... and the least there is
+  double sigma_base_rad = 0.03;
   double search_most_m = 6.0;
   double search_rad = 0.50;
   double cell_m = 0.10;              ///< of the search grid
