@@ -74,7 +74,6 @@ struct Alert {
 struct LayoutView {
   std::string plan_id;
   LayoutMap layout;
-  double turn_rad = 0;  ///< of the plan in the map: heading of the picture's +x
 };
 
 /// Everything there is to show, at one moment. Immutable; parts that did not change are shared with the snapshot

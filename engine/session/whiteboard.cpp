@@ -66,7 +66,7 @@ Result<Ok> Whiteboard::do_apply(const SetLayout& command) {
   const bool same_sheet = layout && layout->plan_id == command.plan_id &&
                           layout->layout.width_px == command.layout.width_px &&
                           layout->layout.height_px == command.layout.height_px;
-  layout = std::make_shared<const LayoutView>(LayoutView{command.plan_id, command.layout, 0});
+  layout = std::make_shared<const LayoutView>(LayoutView{command.plan_id, command.layout});
   wall_verdicts.clear();  // walls are counted anew
   if (!same_sheet) {
     ++revisions.layout_frame;

@@ -65,7 +65,6 @@ Json floor_json(const Snapshot& s, const ServerView& view) {
                                              rounded_m(top)}},
                 {"exploring", std::any_of(s.robots.begin(), s.robots.end(), [](const auto& r) { return r.exploring; })},
                 {"stopped", std::any_of(s.robots.begin(), s.robots.end(), [](const auto& r) { return r.stopped; })}};
-  if (s.layout) floor["turn_rad"] = rounded_rad(s.layout->turn_rad);
   return floor;
 }
 

@@ -63,7 +63,7 @@ describe('tablets and the demo', { timeout: 900_000 }, () => {
   test('a mark survives a server that is killed, and the page comes back without being loaded again', async () => {
     const anna = await tablet();
     await anna.page.evaluate(() => (globalThis.sameDocument = true));
-    const place = await middleOfTheMap(smokemap.url);
+    const place = await anna.besideTheRobot(smokemap.url);
     await anna.mark(place, 'Gas bottle', 'Acetylene');
     await anna.see('Acetylene');
     await anna.settled();
@@ -84,7 +84,7 @@ describe('tablets and the demo', { timeout: 900_000 }, () => {
   test('two tablets see each other and what the other marks', async () => {
     const [anna, bo] = [await tablet(), await tablet()];
     await anna.page.waitForSelector('.chip.people >> text=2');
-    const place = await middleOfTheMap(smokemap.url);
+    const place = await anna.besideTheRobot(smokemap.url);
     await anna.mark(place, 'Person', 'At the window');
     await bo.see('At the window');
     await bo.page.click('button:has-text("At the window")');
@@ -121,14 +121,6 @@ describe('tablets and the demo', { timeout: 900_000 }, () => {
     probe.close();
   });
 });
-
-/** Where a mark can be put: beside the robot. */
-async function middleOfTheMap(url) {
-  const probe = await Probe.open(url);
-  const { x, y } = await probe.until(({ robots }) => Object.values(robots ?? {}).find(({ localized }) => localized), kLookAround);
-  probe.close();
-  return [x + 0.5, y + 0.5];
-}
 
 /** The middle of the room farthest from the robot of which no wall was seen. */
 function unseenRoom({ plan_regions, info, walls, robots }) {

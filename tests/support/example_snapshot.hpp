@@ -17,7 +17,6 @@ inline Snapshot example_snapshot() {
   layout->layout.corners = {{Point2(100, 500), 1, 1}, {Point2(700, 500), 2, 1}, {Point2(700, 100), 1, 1}};
   layout->layout.walls = {{0, 1, 8, 0.9, false}, {1, 2, 8, 0.8, true}};
   layout->layout.scale = LayoutScale{0.025, 0.02, true};
-  layout->turn_rad = 0.1;
   auto merged = std::make_shared<MergedMap>();
   merged->revision = 3;
   merged->walls = {{0, {Point2(0, 0), Point2(6, 0)}, WallState::kConfirmed, 0.95, 5, 0.1},

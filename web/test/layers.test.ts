@@ -7,6 +7,7 @@ import { expect, test } from 'vitest';
 const kSource = fileURLToPath(new URL('../src/', import.meta.url));
 const kFloors: Readonly<Record<string, readonly string[]>> = {
   geometry: [],
+  offline: [],
   wire: ['geometry'],
   link: ['wire'],
   model: ['geometry', 'wire'],

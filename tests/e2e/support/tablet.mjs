@@ -1,5 +1,6 @@
 // A tablet in somebody's hands: opens the page, changes modes, taps places of the map, and reads what the page says.
 import { createRequire } from 'node:module';
+import { Probe } from './probe.mjs';
 
 const { chromium } = createRequire(new URL('../../../web/package.json', import.meta.url))('playwright-core');
 
@@ -79,6 +80,26 @@ export class Tablet {
     await this.page.mouse.down();
     await this.page.waitForTimeout(1_000);
     await this.page.mouse.up();
+  }
+
+  /** Where a mark can be put: beside the robot. */
+  async besideTheRobot(url, ms = 120_000) {
+    const probe = await Probe.open(url);
+    const { x, y } = await probe.until(({ robots }) => Object.values(robots ?? {}).find(({ localized }) => localized), ms);
+    probe.close();
+    return [x + 0.5, y + 0.5];
+  }
+
+  /** How many pixels of the canvases are painted. */
+  paintedPixels() {
+    return this.page.evaluate(() => {
+      let painted = 0;
+      for (const canvas of document.querySelectorAll('canvas.map-canvas')) {
+        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+        for (let i = 3; i < data.length; i += 4) if (data[i] > 0) painted++;
+      }
+      return painted;
+    });
   }
 
   /** Every act is with the server: nothing waits. */

@@ -64,7 +64,7 @@ export class LiveLink {
   #stopped = false;
   #attempt = 0;
   #lastHeardMs: number | null = null;
-  #clockOffsetMs = 0;
+  #clockOffsetMs: number;
   #bestRoundTripMs = Infinity;
   #cancelTimer: () => void = () => {};
   /** Bad frames since the start; shown in the link's details, never fatal. */
@@ -76,12 +76,15 @@ export class LiveLink {
     outbox: Outbox,
     token: string,
     position: () => Position,
+    /** From before a reload, until the server tells its clock. */
+    clockOffsetMs = 0,
   ) {
     this.#around = around;
     this.#handlers = handlers;
     this.#outbox = outbox;
     this.#token = token;
     this.#position = position;
+    this.#clockOffsetMs = clockOffsetMs;
   }
 
   get connected(): boolean {
@@ -92,6 +95,9 @@ export class LiveLink {
   }
   get roundTripMs(): number | null {
     return Number.isFinite(this.#bestRoundTripMs) ? this.#bestRoundTripMs : null;
+  }
+  get clockOffsetMs(): number {
+    return this.#clockOffsetMs;
   }
   /** This device's idea of the server's clock. */
   serverNowMs(): number {

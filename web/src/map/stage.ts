@@ -83,10 +83,18 @@ export class Stage {
     return () => this.#view.un('change:rotation', tell);
   }
 
-  /** Tells when the view came to rest after moving. */
-  onMoved(listener: () => void): () => void {
-    this.#map.on('moveend', listener);
-    return () => this.#map.un('moveend', listener);
+  /** Tells of every painted frame that shows another view than the one before, the first included. */
+  onView(listener: (view: ViewState) => void): () => void {
+    let told = '';
+    const tell = (): void => {
+      const { view, size } = this;
+      const now = [...view.center, view.resolution, view.rotation, size.width, size.height].join(' ');
+      if (now === told || size.width === 0) return;
+      told = now;
+      listener(view);
+    };
+    this.#map.on('postrender', tell);
+    return () => this.#map.un('postrender', tell);
   }
 
   straighten(): void {

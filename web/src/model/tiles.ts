@@ -49,6 +49,14 @@ export class TileStore {
     this.#tell('all');
   }
 
+  /** What this device kept from before a reload: the server goes on from there if it is still the same run. */
+  restore(epoch: number, seq: number, tiles: readonly Tile[]): void {
+    this.enterEpoch(epoch);
+    this.#seq = seq;
+    for (const tile of tiles) this.#tiles.set(tileKey(tile.tx, tile.ty), tile);
+    this.#tell('all');
+  }
+
   /** Resolves when the frame's tiles are in. Tiles that do not decode are left as they were and counted. */
   async add(frame: TileFrame): Promise<{ readonly broken: number }> {
     this.enterEpoch(frame.epoch);

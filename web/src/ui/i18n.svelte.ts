@@ -1,10 +1,13 @@
-/** Every word on the screen, in one table per language; a missing key does not compile. */
+/** Every word on the screen, in one table per language; a missing key does not compile. English is there at once, others when wanted. */
 import { en, type Key } from './words_en';
-import { de } from './words_de';
 
 export type Language = 'en' | 'de';
-const kTables: Readonly<Record<Language, Readonly<Record<Key, string>>>> = { en, de };
+export type Words = Readonly<Record<Key, string>>;
 
+const kLoaders: Readonly<Record<Language, () => Promise<Words>>> = {
+  en: () => Promise.resolve(en),
+  de: () => import('./words_de').then(({ de }) => de),
+};
 const kStored = 'smokemap.language';
 
 function preferred(): Language {
@@ -13,19 +16,26 @@ function preferred(): Language {
   return globalThis.navigator?.language.startsWith('de') ? 'de' : 'en';
 }
 
-let language = $state<Language>(preferred());
+let language = $state<Language>('en');
+let words = $state.raw<Words>(en);
 
 export const currentLanguage = (): Language => language;
 
-export function setLanguage(next: Language): void {
+/** Without a link the words may not come: then the page stays as it is. */
+export async function setLanguage(next: Language): Promise<void> {
+  const loaded = await kLoaders[next]().catch(() => undefined);
+  if (!loaded) return;
+  words = loaded;
   language = next;
   document.documentElement.lang = next;
   localStorage.setItem(kStored, next);
 }
 
+export const startLanguage = (): Promise<void> => setLanguage(preferred());
+
 /** The words for `key`, with `{name}` replaced by `values.name`. */
 export function t(key: Key, values: Readonly<Record<string, string | number>> = {}): string {
-  return kTables[language][key].replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+  return words[key].replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
 }
 
 export type { Key };

@@ -9,6 +9,8 @@ export const de: Readonly<Record<Key, string>> = {
   'redo.nothing': 'Nichts zu wiederholen.',
   'undo.nothing': 'Von Ihnen ist nichts zurückzunehmen.',
   'language.other': 'English',
+  'shell.notLoaded': 'Dieser Teil der Seite ließ sich nicht laden',
+  'shell.notLoadedHint': 'Bitte mit Verbindung zum Server erneut versuchen.',
   'theme.dark': 'Dunkle Farben',
   'theme.light': 'Helle Farben',
   'mode.prepare': 'Planen',

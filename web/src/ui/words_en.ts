@@ -7,6 +7,8 @@ export const en = {
   'redo.nothing': 'Nothing to redo.',
   'undo.nothing': 'Nothing of yours to undo.',
   'language.other': 'Deutsch',
+  'shell.notLoaded': 'This part of the page could not be loaded',
+  'shell.notLoadedHint': 'Try again when there is a link to the server.',
   'theme.dark': 'Dark colours',
   'theme.light': 'Light colours',
   'mode.prepare': 'Prepare',

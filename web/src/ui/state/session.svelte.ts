@@ -6,6 +6,8 @@ import type { MapPoint } from '../../geometry/points';
 import type { Api } from '../../link/api';
 import { LiveLink, type Surroundings } from '../../link/live_link';
 import type { Entry, Outbox } from '../../link/outbox';
+import type { Restored, SavedState } from '../../model/saved';
+import { saveState } from '../../model/saved';
 import { isReflected, type PendingCommand, withPending } from '../../model/pending';
 import { linkWord, type LinkWord } from '../../model/status';
 import { TileStore } from '../../model/tiles';
@@ -34,6 +36,8 @@ const kTickMs = 500;
 const kLookEveryMs = 500;
 /** An acknowledged act whose effect does not show within this time is no longer drawn as ours. */
 const kForgetAckedMs = 3_000;
+/** A page that was just loaded tries for so long before it says that there is no link. */
+const kConnectingMs = 1_500;
 
 export class Session {
   readonly me: Identity;
@@ -63,14 +67,31 @@ export class Session {
   readonly #around: Surroundings;
   readonly #link: LiveLink;
   readonly #inkListeners = new Set<InkListener>();
+  readonly #changed: () => void;
+  readonly #startedMs: number;
+  /** When the state that a reload found on the disk was heard. */
+  #keptFromMs: number | null = null;
 
-  constructor(me: Identity, api: Api, outbox: Outbox, around: Surroundings, onUnauthorised: () => void) {
+  /** @param kept from before a reload. @param changed the state is another one than the last that was kept. */
+  constructor(
+    me: Identity,
+    api: Api,
+    outbox: Outbox,
+    around: Surroundings,
+    onUnauthorised: () => void,
+    kept?: Restored,
+    changed: () => void = () => {},
+  ) {
     this.me = me;
     this.world = $derived(withPending(this.#published, this.pending, me.name));
     this.api = api;
     this.#outbox = outbox;
     this.#around = around;
-    this.#link = new LiveLink(around, this.#handlers(onUnauthorised), outbox, me.token, () => this.#position());
+    this.#changed = changed;
+    this.#startedMs = around.nowMs();
+    if (kept) this.#restore(kept);
+    const offset = kept?.head.clockOffsetMs ?? 0;
+    this.#link = new LiveLink(around, this.#handlers(onUnauthorised), outbox, me.token, () => this.#position(), offset);
     this.stop = new Stop(() => this.send({ name: 'emergency_stop', data: { robot: '', engaged: true } }), around.after);
   }
 
@@ -140,6 +161,21 @@ export class Session {
     if (p) this.#link.look({ x: p[0], y: p[1], radius });
   }
 
+  /** To be kept on the disk; nothing before the server was heard. */
+  get state(): SavedState | undefined {
+    const { lastHeardMs, clockOffsetMs } = this.#link;
+    if (lastHeardMs === null || this.#epoch === 0) return undefined;
+    return saveState(this.#latest, this.tiles, { heardMs: lastHeardMs, clockOffsetMs, resolutionM: this.resolutionM });
+  }
+
+  #restore({ head, world, tiles }: Restored): void {
+    this.#epoch = head.epoch;
+    this.#latest = this.#published = world;
+    this.#keptFromMs = head.heardMs;
+    this.resolutionM = head.resolutionM;
+    this.tiles.restore(head.epoch, head.seq, tiles);
+  }
+
   #position(): { epoch: number; seq: number; parts?: Record<string, number> } {
     const position = this.tiles.position;
     // Revisions count within one run of the server; those of another run say nothing.
@@ -153,6 +189,7 @@ export class Session {
       delta: (delta) => this.#onDelta(delta),
       tiles: async (frame) => {
         await this.tiles.add(frame);
+        this.#changed();
         await nextFrame();
       },
       done: (entry) => this.#onDone(entry),
@@ -190,6 +227,7 @@ export class Session {
   }
 
   #publish(): void {
+    this.#changed();
     if (this.#publishing) return;
     this.#publishing = true;
     void nextFrame().then(() => {
@@ -210,9 +248,11 @@ export class Session {
   }
 
   #updateLink(): void {
-    const heard = this.#link.lastHeardMs;
-    this.linkAgeMs = heard === null ? null : this.#around.nowMs() - heard;
-    this.linkWord = linkWord(this.#link.connected, this.linkAgeMs);
+    const now = this.#around.nowMs();
+    const heard = this.#link.lastHeardMs ?? this.#keptFromMs;
+    this.linkAgeMs = heard === null ? null : now - heard;
+    const isTrying = this.#link.lastHeardMs === null && now - this.#startedMs < kConnectingMs;
+    this.linkWord = isTrying ? 'connecting' : linkWord(this.#link.connected, this.linkAgeMs);
     if (this.#outbox.entries.length !== this.pending.length) this.#updatePending();
   }
 
