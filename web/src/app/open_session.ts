@@ -24,7 +24,7 @@ export function storedIdentity(): Identity | undefined {
 export function forgetIdentity(): void {
   const known = storedIdentity();
   localStorage.removeItem(kStored);
-  if (known) void IdbStorage.open(known.device).then((storage) => storage.saveState(null), () => undefined);
+  if (known) void IdbStorage.open(known.device).then((storage) => storage.forgetStates(), () => undefined);
   void globalThis.caches?.delete('smokemap-pictures');
 }
 
@@ -35,7 +35,7 @@ export async function openSession(me: Identity, onUnauthorised: () => void): Pro
   // Private windows may have no database: then commands live as long as the page.
   const storage = await IdbStorage.open(me.device).catch(() => undefined);
   const outbox = await Outbox.open(storage ?? new MemoryStorage());
-  const kept: Restored | undefined = restoreState(await storage?.loadState().catch(() => null));
+  const kept: Restored | undefined = restoreState(await storage?.loadState('last').catch(() => null));
   const keeper = storage && new Keeper(storage, browserSurroundings.after);
   const turnedAway = (): void => {
     keeper?.watch(() => undefined);
@@ -51,5 +51,10 @@ export async function openSession(me: Identity, onUnauthorised: () => void): Pro
   void navigator.storage?.persist?.();
   session.start();
   const pictures = new Pictures(api);
-  return { session, pictures, prepare: new Prepare(session, pictures) };
+  const prepare = new Prepare(session, pictures, {
+    load: async () => (await storage?.loadState('preparation')) ?? null,
+    save: async (value) => storage?.saveState('preparation', value),
+  });
+  void prepare.restore();
+  return { session, pictures, prepare };
 }

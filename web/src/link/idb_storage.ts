@@ -6,15 +6,16 @@ interface Schema extends DBSchema {
   state: { key: string; value: unknown };
 }
 
-const kLast = 'last';
+/** What is kept beside the outbox: the last state that was seen, and a plan being prepared. */
+export type StateName = 'last' | 'preparation';
 
-/** Where the last state survives; null when there is none. */
+/** Where states survive a reload; null where there is none. */
 export interface StateStorage {
-  loadState(): Promise<unknown>;
-  saveState(state: unknown): Promise<void>;
+  loadState(name: StateName): Promise<unknown>;
+  saveState(name: StateName, state: unknown): Promise<void>;
 }
 
-/** The outbox and the last state in IndexedDB. One database per paired device: two people on one tablet do not act for each other. */
+/** The outbox and the kept states in IndexedDB. One database per paired device: two people on one tablet do not act for each other. */
 export class IdbStorage implements OutboxStorage, StateStorage {
   readonly #db: IDBPDatabase<Schema>;
 
@@ -44,10 +45,13 @@ export class IdbStorage implements OutboxStorage, StateStorage {
     await this.#db.delete('outbox', id);
   }
 
-  async loadState(): Promise<unknown> {
-    return (await this.#db.get('state', kLast)) ?? null;
+  async loadState(name: StateName): Promise<unknown> {
+    return (await this.#db.get('state', name)) ?? null;
   }
-  async saveState(state: unknown): Promise<void> {
-    await this.#db.put('state', state, kLast);
+  async saveState(name: StateName, state: unknown): Promise<void> {
+    await this.#db.put('state', state, name);
+  }
+  async forgetStates(): Promise<void> {
+    await this.#db.clear('state');
   }
 }

@@ -10,18 +10,32 @@ export interface PlanWall {
   readonly look: 'sure' | 'doubtful' | 'off' | 'own';
 }
 
+/** A gap between walls of the plan. */
+export interface PlanOpening {
+  readonly a: Xy;
+  readonly b: Xy;
+  readonly kind: 'door' | 'window' | 'passage';
+}
+
+/** Doors closed lines, windows close dashes, passages a thin dotted line: told apart without their colour. */
+const kOpenings: Readonly<Record<PlanOpening['kind'], { readonly widthPx: number; readonly dashPx: readonly number[] }>> = {
+  door: { widthPx: 4, dashPx: [] },
+  window: { widthPx: 4, dashPx: [3, 5] },
+  passage: { widthPx: 2, dashPx: [1, 5] },
+};
+
 const kTones: Readonly<Record<PlanWall['look'], Tone>> = { sure: 'accent', doubtful: 'warning', off: 'muted', own: 'ok' };
 
 export class PlanWallsPainter implements Painter {
   revision = 0;
   #paths = new Map<PlanWall['look'], Path2D>();
-  #doors = new Path2D();
+  #openings = new Map<PlanOpening['kind'], Path2D>();
   #toView: Affine = [1, 0, 0, -1, 0, 0];
   #tone: Tone | undefined;
   #opacity = 1;
 
   /** @param toView layout_px -> view; the default lays the plan at its own pixels. */
-  setWalls(walls: readonly PlanWall[], doors: readonly (readonly [number, number, number, number])[] = []): void {
+  setWalls(walls: readonly PlanWall[], openings: readonly PlanOpening[] = []): void {
     this.#paths = new Map();
     for (const { a, b, look } of walls) {
       const path = this.#paths.get(look) ?? new Path2D();
@@ -29,10 +43,12 @@ export class PlanWallsPainter implements Painter {
       path.moveTo(a[0], a[1]);
       path.lineTo(b[0], b[1]);
     }
-    this.#doors = new Path2D();
-    for (const [x1, y1, x2, y2] of doors) {
-      this.#doors.moveTo(x1, y1);
-      this.#doors.lineTo(x2, y2);
+    this.#openings = new Map();
+    for (const { a, b, kind } of openings) {
+      const path = this.#openings.get(kind) ?? new Path2D();
+      this.#openings.set(kind, path);
+      path.moveTo(a[0], a[1]);
+      path.lineTo(b[0], b[1]);
     }
     this.revision++;
   }
@@ -63,9 +79,12 @@ export class PlanWallsPainter implements Painter {
       context.stroke(path);
     }
     context.globalAlpha = this.#opacity;
-    context.setLineDash([]);
-    context.lineWidth = 4 * unit;
     context.strokeStyle = frame.palette.door;
-    context.stroke(this.#doors);
+    for (const [kind, path] of this.#openings) {
+      const { widthPx, dashPx } = kOpenings[kind];
+      context.lineWidth = widthPx * unit;
+      context.setLineDash(dashPx.map((px) => px * unit));
+      context.stroke(path);
+    }
   }
 }

@@ -1,5 +1,6 @@
 /**
- * A read plan on its way to becoming the plan of the floor: walls can be switched off and on, drawn, and the scale set.
+ * A read plan on its way to becoming the plan of the floor: walls can be switched off and on, drawn, gaps told apart, and
+ * the scale set.
  * Immutable; every edit is a new draft, so undo is a list of drafts.
  */
 import { distance, type LayoutPx } from '../geometry/points';
@@ -15,11 +16,22 @@ export interface DraftWall {
   readonly byPerson: boolean;
 }
 
+export type OpeningKind = 'door' | 'window' | 'passage';
+
+/** A gap between walls. */
+export interface Opening {
+  readonly a: LayoutPx;
+  readonly b: LayoutPx;
+  readonly kind: OpeningKind;
+  readonly confidence: number;
+}
+
 export interface PlanDraft {
   readonly planId: string;
   readonly rectified: string;
   readonly document: LayoutDocument;
   readonly walls: readonly DraftWall[];
+  readonly openings: readonly Opening[];
   readonly metresPerPixel: number | null;
   /** The scale was measured by a person, not guessed from doors. */
   readonly scaleByPerson: boolean;
@@ -40,18 +52,48 @@ export function draftFrom(planId: string, rectified: string, document: LayoutDoc
     on: true,
     byPerson: document.wall_by_person[i] ?? false,
   }));
-  return { planId, rectified, document, walls, metresPerPixel: document.metres_per_pixel ?? null, scaleByPerson: document.scale_by_person };
+  const openings = document.doors.map(([x1, y1, x2, y2], i): Opening => ({
+    a: [x1, y1],
+    b: [x2, y2],
+    kind: document.door_kinds[i] ?? 'door',
+    confidence: document.door_confidence[i] ?? 1,
+  }));
+  const metresPerPixel = document.metres_per_pixel ?? null;
+  return { planId, rectified, document, walls, openings, metresPerPixel, scaleByPerson: document.scale_by_person };
 }
 
-export const wallAt = (draft: PlanDraft, p: LayoutPx, reach: number): number | undefined => {
+function nearestLine(lines: readonly { readonly a: LayoutPx; readonly b: LayoutPx }[], p: LayoutPx, reach: number): number | undefined {
   let best: number | undefined;
   let nearest = reach;
-  draft.walls.forEach((wall, i) => {
-    const off = distanceToSegment(p, wall.a, wall.b);
+  lines.forEach(({ a, b }, i) => {
+    const off = distanceToSegment(p, a, b);
     if (off <= nearest) [best, nearest] = [i, off];
   });
   return best;
-};
+}
+
+export const wallAt = (draft: PlanDraft, p: LayoutPx, reach: number): number | undefined => nearestLine(draft.walls, p, reach);
+
+/** A gap lies between the ends of walls: a finger on its middle half means the gap, nearer to its ends a wall. */
+export function openingAt(draft: PlanDraft, p: LayoutPx, reach: number): number | undefined {
+  const middles = draft.openings.map(({ a, b }) => ({ a: between(a, b, 0.25), b: between(a, b, 0.75) }));
+  return nearestLine(middles, p, reach);
+}
+
+const between = (a: LayoutPx, b: LayoutPx, share: number): LayoutPx => [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
+
+/** A person says what the gap is; what a person said is sure. */
+export const nameOpening = (draft: PlanDraft, index: number, kind: OpeningKind): PlanDraft => ({
+  ...draft,
+  openings: draft.openings.map((opening, i) => (i === index ? { ...opening, kind, confidence: 1 } : opening)),
+});
+
+/** No gap at all: the wall goes through. */
+export function closeOpening(draft: PlanDraft, index: number): PlanDraft {
+  const opening = draft.openings[index];
+  if (!opening) return draft;
+  return { ...addWall(draft, opening.a, opening.b), openings: draft.openings.filter((_, i) => i !== index) };
+}
 
 export const toggleWall = (draft: PlanDraft, index: number): PlanDraft => ({
   ...draft,
@@ -91,6 +133,9 @@ export function documentOf(draft: PlanDraft): LayoutDocument {
     wall_confidence: kept.map((wall) => (wall.byPerson ? 1 : wall.confidence)),
     wall_by_person: kept.map((wall) => wall.byPerson),
     wall_corners: kept.map(({ a, b }) => [cornerAt(a), cornerAt(b)] as const),
+    doors: draft.openings.map(({ a, b }) => [a[0], a[1], b[0], b[1]] as const),
+    door_kinds: draft.openings.map(({ kind }) => kind),
+    door_confidence: draft.openings.map(({ confidence }) => confidence),
     corners,
     corner_confidence: corners.map(() => 1),
     rectified: draft.rectified,

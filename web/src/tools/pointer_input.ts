@@ -27,7 +27,7 @@ const kWheelStep = 1.0015;
 
 const deviceOf = (type: string): PointerSample['device'] => (type === 'pen' ? 'pen' : type === 'touch' ? 'touch' : 'mouse');
 
-export function attachPointer(target: HTMLElement, stage: Stage, tool: () => Tool, onPenSeen: () => void): PointerInput {
+export function attachPointer(target: HTMLElement, stage: Stage, tool: () => Tool, hasGloves: () => boolean, onPenSeen: () => void): PointerInput {
   let state: PointerState = kIdle;
   let grip: Grip | null = null;
   const at = ({ clientX, clientY }: MouseEvent): ScreenPoint => {
@@ -69,7 +69,7 @@ export function attachPointer(target: HTMLElement, stage: Stage, tool: () => Too
       secondary: device === 'mouse' && event.button > 0,
     };
     const knewPen = state.penSeen;
-    const next = step(state, sample, tool().rules);
+    const next = step(state, sample, { ...tool().rules, gloves: hasGloves() });
     state = next.state;
     next.decisions.forEach(carryOut);
     if (!knewPen && state.penSeen) onPenSeen();

@@ -25,6 +25,8 @@ export interface Rules {
   /** Does the tool want this contact? `draw`: as ink; `drag`: it took hold of a handle; `none`: the map may have it. */
   readonly wants: (p: ScreenPoint) => 'draw' | 'drag' | 'none';
   readonly fingerDraws: 'until pen' | 'always' | 'never';
+  /** Gloves are wide and slip: a tap may move further, and only a wider contact is a palm. */
+  readonly gloves?: boolean;
 }
 
 export type Decision =
@@ -59,6 +61,8 @@ export const kHoldMs = 60;
 export const kTakeBackMs = 120;
 const kTapMs = 400;
 const kSlopPx = 12;
+export const kGloveSlopPx = 24;
+export const kGlovePalmPx = 110;
 
 export const kIdle: PointerState = { contacts: new Map(), penSeen: false, lastPenMs: -Infinity };
 
@@ -85,7 +89,7 @@ export function step(state: PointerState, sample: PointerSample, rules: Rules): 
     case 'down':
       return onDown(timed, sample, rules);
     case 'move':
-      return onMove(timed, sample);
+      return onMove(timed, sample, rules);
     case 'up':
       return onUp(timed, sample);
     case 'cancel':
@@ -93,14 +97,14 @@ export function step(state: PointerState, sample: PointerSample, rules: Rules): 
   }
 }
 
-const isPalm = (state: PointerState, { device, width, timeMs }: PointerSample): boolean =>
-  device === 'touch' && (width > kPalmWidthPx || timeMs - state.lastPenMs < kPenQuietMs);
+const isPalm = (state: PointerState, { device, width, timeMs }: PointerSample, { gloves }: Rules): boolean =>
+  device === 'touch' && (width > (gloves ? kGlovePalmPx : kPalmWidthPx) || timeMs - state.lastPenMs < kPenQuietMs);
 
 function onDown(state: PointerState, sample: PointerSample, rules: Rules): Step {
   const { id, p, device, timeMs } = sample;
   const wanted = sample.secondary ? 'none' : rules.wants(p);
   const fresh = { device, from: p, sinceMs: timeMs, p, moved: false, how: wanted === 'drag' ? 'drag' : 'draw' } as const;
-  if (isPalm(state, sample)) return stay(withContact(state, id, { ...fresh, role: 'ignored' }));
+  if (isPalm(state, sample, rules)) return stay(withContact(state, id, { ...fresh, role: 'ignored' }));
   if (device === 'pen') return penDown(state, id, { ...fresh, role: wanted === 'none' ? 'gesture' : 'work' });
   const working = [...state.contacts].find(([, contact]) => contact.role === 'work' || contact.role === 'held');
   if (working) return secondFinger(state, working, id, fresh, timeMs);
@@ -140,10 +144,10 @@ function joinGesture(state: PointerState, id: number, contact: Contact): Step {
   return stay(next, { kind: 'grip', fingers: gestureFingers(next) });
 }
 
-function onMove(state: PointerState, { id, p, timeMs }: PointerSample): Step {
+function onMove(state: PointerState, { id, p, timeMs }: PointerSample, { gloves }: Rules): Step {
   const contact = state.contacts.get(id);
   if (!contact) return stay(state);
-  const moved = contact.moved || distance(contact.from, p) > kSlopPx;
+  const moved = contact.moved || distance(contact.from, p) > (gloves ? kGloveSlopPx : kSlopPx);
   const next: Contact = { ...contact, p, moved };
   if (contact.role === 'held') {
     const ripe = timeMs - contact.sinceMs >= kHoldMs;

@@ -12,6 +12,8 @@ const layoutDocument = v.looseObject({
   wall_confidence: v.optional(v.array(number), []),
   wall_by_person: v.optional(v.array(v.boolean()), []),
   doors: v.optional(v.array(segment), []),
+  door_kinds: v.optional(v.array(v.picklist(['door', 'window', 'passage'])), []),
+  door_confidence: v.optional(v.array(number), []),
   corners: v.optional(v.array(pair), []),
   wall_corners: v.optional(v.array(pair), []),
   metres_per_pixel: v.nullish(number, null),

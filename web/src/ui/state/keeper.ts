@@ -31,6 +31,6 @@ export class Keeper {
     this.#cancel = undefined;
     this.#wait = kEveryMs;
     const state = this.#state();
-    if (state !== undefined) await this.#storage.saveState(state).catch(() => undefined);
+    if (state !== undefined) await this.#storage.saveState('last', state).catch(() => undefined);
   }
 }

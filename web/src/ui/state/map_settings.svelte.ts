@@ -6,6 +6,8 @@ export type Versions = 'after' | 'before' | 'both';
 export class MapSettings {
   sensed = $state(1);
   picture = $state(0);
+  /** How the plan was fitted: local scale and links. */
+  fit = $state(false);
   versions = $state<Versions>('after');
   hidden = $state.raw<ReadonlySet<WallState>>(new Set());
 

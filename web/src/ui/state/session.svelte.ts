@@ -38,6 +38,7 @@ const kLookEveryMs = 500;
 const kForgetAckedMs = 3_000;
 /** A page that was just loaded tries for so long before it says that there is no link. */
 const kConnectingMs = 1_500;
+const kAnswersKept = 50;
 
 export class Session {
   readonly me: Identity;
@@ -67,6 +68,9 @@ export class Session {
   readonly #around: Surroundings;
   readonly #link: LiveLink;
   readonly #inkListeners = new Set<InkListener>();
+  readonly #waiters = new Map<string, (ok: boolean) => void>();
+  /** Answers that came before somebody waited for them. */
+  readonly #answers = new Map<string, boolean>();
   readonly #changed: () => void;
   readonly #startedMs: number;
   /** When the state that a reload found on the disk was heard. */
@@ -128,6 +132,28 @@ export class Session {
       return '';
     }
     return this.#link.send(command);
+  }
+
+  /**
+   * Resolves when the server has carried the command out or refused it, however long the link takes to come back; what
+   * was refused or has expired was said to the person already.
+   */
+  async sendAndWait(command: Command): Promise<{ readonly ok: boolean; readonly message: string }> {
+    const id = await this.send(command);
+    if (!id) return { ok: false, message: '' };
+    const early = this.#answers.get(id);
+    if (early !== undefined) return { ok: early, message: '' };
+    return new Promise((resolve) => this.#waiters.set(id, (ok) => resolve({ ok, message: '' })));
+  }
+  #answered(id: string, ok: boolean): void {
+    const waiter = this.#waiters.get(id);
+    this.#waiters.delete(id);
+    if (waiter) waiter(ok);
+    else this.#answers.set(id, ok);
+    for (const oldest of this.#answers.keys()) {
+      if (this.#answers.size <= kAnswersKept) break;
+      this.#answers.delete(oldest);
+    }
   }
 
   /** Carries out `forward` and remembers how to take it back. */
@@ -195,10 +221,14 @@ export class Session {
       done: (entry) => this.#onDone(entry),
       refused: (entry, message) => {
         this.stop.answered(entry.id, false);
+        this.#answered(entry.id, false);
         this.toasts.show('warning', t('link.refused', { what: nameOf(entry.command), why: message }));
         this.#updatePending();
       },
-      expired: (entry) => this.toasts.show('warning', t('link.expired', { what: nameOf(entry.command) })),
+      expired: (entry) => {
+        this.#answered(entry.id, false);
+        this.toasts.show('warning', t('link.expired', { what: nameOf(entry.command) }));
+      },
       ink: (ink) => this.#inkListeners.forEach((listener) => listener(ink)),
       changed: () => this.#updateLink(),
     };
@@ -222,6 +252,7 @@ export class Session {
 
   #onDone(entry: Entry): void {
     this.stop.answered(entry.id, true);
+    this.#answered(entry.id, true);
     this.#acked.set(entry.id, { command: entry.command, createdMs: entry.createdMs, ackedMs: this.#around.nowMs() });
     this.#updatePending();
   }
