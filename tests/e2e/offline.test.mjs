@@ -42,11 +42,7 @@ describe('with and without a link', { timeout: 120_000 }, () => {
     await page.waitForFunction(() => navigator.serviceWorker.controller !== null);
     const painted = await anna.paintedPixels();
     assert.ok(painted > 1000);
-    // Out of sight: the state goes to the disk.
-    await page.evaluate(() => {
-      Object.defineProperty(document, 'hidden', { get: () => true, configurable: true });
-      document.dispatchEvent(new Event('visibilitychange'));
-    });
+    await page.waitForFunction(keptOnDisk, 'Before the reload');
     await smokemap.kill();
     await page.reload();
     await anna.see('Before the reload');
@@ -60,3 +56,15 @@ describe('with and without a link', { timeout: 120_000 }, () => {
     await anna.link('Live');
   });
 });
+
+/** Does the state on the disk hold a mark of this name? */
+async function keptOnDisk(label) {
+  const open = (name) => new Promise((resolve) => (indexedDB.open(name).onsuccess = ({ target }) => resolve(target.result)));
+  for (const { name } of await indexedDB.databases()) {
+    const db = await open(name);
+    const state = await new Promise((resolve) => (db.transaction('state').objectStore('state').get('last').onsuccess = ({ target }) => resolve(target.result)));
+    db.close();
+    if (Object.values(state?.parts.pois ?? {}).some((poi) => poi.label === label)) return true;
+  }
+  return false;
+}

@@ -41,16 +41,6 @@ describe('tablets and the demo', { timeout: 900_000 }, () => {
     probe.close();
   });
 
-  test('an uploaded picture becomes walls over it', async () => {
-    const anna = await tablet();
-    await anna.mode('Prepare');
-    const plan = await drawnPlan(anna.page);
-    await anna.page.setInputFiles('[data-testid=plan-file]', { name: 'plan.png', mimeType: 'image/png', buffer: plan });
-    const words = await anna.page.waitForSelector('text=/\\d+ walls, \\d+ doubtful/');
-    const count = Number(/(\d+) walls/.exec(await words.textContent())[1]);
-    assert.ok(count >= 6 && count <= 40, `${count} walls were read`);
-  });
-
   test('closed lines become rooms', async () => {
     const bo = await tablet();
     await bo.mode('Sketch');
@@ -147,29 +137,4 @@ function toMap({ px, map, triangles }, p) {
     return [0, 1].map((axis) => (1 - v - w) * map[i][axis] + v * map[j][axis] + w * map[k][axis]);
   }
   return undefined;
-}
-
-/** A plan with four rooms along a corridor, as black lines on white, made by the browser itself. */
-async function drawnPlan(page) {
-  const base64 = await page.evaluate(() => {
-    const canvas = document.createElement('canvas');
-    [canvas.width, canvas.height] = [1200, 800];
-    const context = canvas.getContext('2d');
-    context.fillStyle = '#fff';
-    context.fillRect(0, 0, 1200, 800);
-    context.lineWidth = 9;
-    const walls = [
-      [100, 100, 1100, 100], [1100, 100, 1100, 700], [1100, 700, 100, 700], [100, 700, 100, 100],
-      [100, 450, 280, 450], [360, 450, 760, 450], [840, 450, 1100, 450], [600, 100, 600, 450], [600, 550, 600, 700],
-      [100, 550, 420, 550], [500, 550, 900, 550], [980, 550, 1100, 550],
-    ];
-    for (const [x1, y1, x2, y2] of walls) {
-      context.beginPath();
-      context.moveTo(x1, y1);
-      context.lineTo(x2, y2);
-      context.stroke();
-    }
-    return canvas.toDataURL('image/png').split(',')[1];
-  });
-  return Buffer.from(base64, 'base64');
 }

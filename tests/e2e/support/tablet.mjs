@@ -17,9 +17,10 @@ export class Tablet {
   page;
   errors = [];
 
-  static async open(browser, url) {
+  /** @param options of the browser: size, colours. */
+  static async open(browser, url, options = {}) {
     const tablet = new Tablet();
-    tablet.#context = await browser.newContext({ viewport: { width: 1180, height: 820 }, locale: 'en-GB' });
+    tablet.#context = await browser.newContext({ viewport: { width: 1180, height: 820 }, locale: 'en-GB', ...options });
     tablet.page = await tablet.#context.newPage();
     tablet.page.setDefaultTimeout(kPatientMs);
     tablet.page.on('pageerror', (error) => tablet.errors.push(String(error)));
@@ -47,13 +48,24 @@ export class Tablet {
     return this.page.waitForSelector(`text=${text}`, { timeout });
   }
 
-  /** Taps a place of the canvas' own world: metres of the map, or pixels of a picture with y up. */
-  async tap([x, y]) {
-    const target = this.page.locator('[data-view]').first();
+  /** Taps a place of a canvas' own world: metres of the map, or pixels of a picture with y up. */
+  async tap(p, canvas = 0) {
+    await this.page.mouse.click(...(await this.#onScreen(p, canvas)));
+  }
+
+  async drag(from, to, canvas = 0) {
+    await this.page.mouse.move(...(await this.#onScreen(from, canvas)));
+    await this.page.mouse.down();
+    await this.page.mouse.move(...(await this.#onScreen(to, canvas)), { steps: 8 });
+    await this.page.mouse.up();
+  }
+
+  async #onScreen([x, y], canvas) {
+    const target = this.page.locator('[data-view]').nth(canvas);
     const box = await target.boundingBox();
     const [cx, cy, resolution, rotation] = (await target.getAttribute('data-view')).split(' ').map(Number);
     if (Math.abs(rotation) > 1e-9) throw new Error('the view is turned');
-    await this.page.mouse.click(box.x + box.width / 2 + (x - cx) / resolution, box.y + box.height / 2 - (y - cy) / resolution);
+    return [box.x + box.width / 2 + (x - cx) / resolution, box.y + box.height / 2 - (y - cy) / resolution];
   }
 
   /** Draws a stroke through canvas points, as fractions of its width and height. */

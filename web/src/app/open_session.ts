@@ -41,7 +41,7 @@ export async function openSession(me: Identity, onUnauthorised: () => void): Pro
     keeper?.watch(() => undefined);
     onUnauthorised();
   };
-  const session = new Session(me, api, outbox, browserSurroundings, turnedAway, kept, () => keeper?.changed());
+  const session = new Session(me, api, outbox, browserSurroundings, turnedAway, kept, keeper);
   keeper?.watch(() => session.state);
   window.addEventListener('online', () => session.link.hurry());
   document.addEventListener('visibilitychange', () => {

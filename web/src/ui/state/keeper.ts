@@ -2,6 +2,8 @@
 import type { StateStorage } from '../../link/idb_storage';
 
 const kFirstMs = 2_000;
+/** The world as the server shows it follows its answer within this time. */
+const kActedMs = 1_000;
 const kEveryMs = 20_000;
 
 export class Keeper {
@@ -23,6 +25,11 @@ export class Keeper {
 
   changed(): void {
     this.#cancel ??= this.#after(this.#wait, () => void this.flush());
+  }
+  /** Something that a person did is part of the state now. */
+  acted(): void {
+    this.#cancel?.();
+    this.#cancel = this.#after(kActedMs, () => void this.flush());
   }
 
   /** A disk that is full or forbidden costs the last state, nothing else. */

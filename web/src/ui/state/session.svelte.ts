@@ -30,6 +30,12 @@ export interface Identity {
   readonly role: Role;
 }
 
+/** Where the last state is kept for a reload. */
+export interface Keeping {
+  changed(): void;
+  acted(): void;
+}
+
 export type InkListener = (ink: Message<'ink'>) => void;
 
 const kTickMs = 500;
@@ -71,12 +77,12 @@ export class Session {
   readonly #waiters = new Map<string, (ok: boolean) => void>();
   /** Answers that came before somebody waited for them. */
   readonly #answers = new Map<string, boolean>();
-  readonly #changed: () => void;
+  readonly #keeping: Keeping;
   readonly #startedMs: number;
   /** When the state that a reload found on the disk was heard. */
   #keptFromMs: number | null = null;
 
-  /** @param kept from before a reload. @param changed the state is another one than the last that was kept. */
+  /** @param kept from before a reload. @param keeping is told that the state is another one than the last that was kept. */
   constructor(
     me: Identity,
     api: Api,
@@ -84,14 +90,14 @@ export class Session {
     around: Surroundings,
     onUnauthorised: () => void,
     kept?: Restored,
-    changed: () => void = () => {},
+    keeping: Keeping = { changed: () => {}, acted: () => {} },
   ) {
     this.me = me;
     this.world = $derived(withPending(this.#published, this.pending, me.name));
     this.api = api;
     this.#outbox = outbox;
     this.#around = around;
-    this.#changed = changed;
+    this.#keeping = keeping;
     this.#startedMs = around.nowMs();
     if (kept) this.#restore(kept);
     const offset = kept?.head.clockOffsetMs ?? 0;
@@ -215,7 +221,7 @@ export class Session {
       delta: (delta) => this.#onDelta(delta),
       tiles: async (frame) => {
         await this.tiles.add(frame);
-        this.#changed();
+        this.#keeping.changed();
         await nextFrame();
       },
       done: (entry) => this.#onDone(entry),
@@ -253,12 +259,13 @@ export class Session {
   #onDone(entry: Entry): void {
     this.stop.answered(entry.id, true);
     this.#answered(entry.id, true);
+    this.#keeping.acted();
     this.#acked.set(entry.id, { command: entry.command, createdMs: entry.createdMs, ackedMs: this.#around.nowMs() });
     this.#updatePending();
   }
 
   #publish(): void {
-    this.#changed();
+    this.#keeping.changed();
     if (this.#publishing) return;
     this.#publishing = true;
     void nextFrame().then(() => {

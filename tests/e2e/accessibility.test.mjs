@@ -1,0 +1,66 @@
+// Every mode, in both themes, with and without gloves, upright and across: no serious finding of axe-core, and nothing to
+// press that is smaller than a finger.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { after, before, describe, test } from 'node:test';
+import { StandIn } from './support/stand_in.mjs';
+import { openBrowser, Tablet } from './support/tablet.mjs';
+
+const axe = readFileSync(createRequire(new URL('../../web/package.json', import.meta.url)).resolve('axe-core/axe.min.js'), 'utf8');
+const kModes = ['Prepare', 'Sketch', 'Match', 'Operate', 'Review'];
+const kSizes = { across: { width: 1180, height: 820 }, upright: { width: 820, height: 1180 } };
+
+describe('for every hand and every eye', { timeout: 150_000 }, () => {
+  let browser;
+  const server = new StandIn();
+  before(async () => {
+    browser = await openBrowser();
+    await server.start();
+  });
+  after(async () => {
+    await browser?.close();
+    server.stop();
+  });
+
+  for (const colorScheme of ['light', 'dark'])
+    for (const [format, viewport] of Object.entries(kSizes))
+      test(`no serious finding: ${colorScheme}, ${format}`, async () => {
+        const anna = await Tablet.open(browser, server.url, { colorScheme, viewport });
+        await anna.page.evaluate(axe);
+        const findings = [];
+        for (const mode of kModes) {
+          await anna.mode(mode);
+          if (mode === 'Operate') await anna.page.click('button.where >> nth=0');
+          const { violations } = await anna.page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
+          for (const { id, impact, nodes } of violations)
+            if (impact === 'serious' || impact === 'critical') findings.push(`${mode}: ${id}: ${nodes.map(({ html, any }) => `${html.slice(0, 110)} ${any[0]?.message ?? ''}`).slice(0, 4).join(' | ')}`);
+        }
+        await anna.close();
+        assert.deepEqual(findings, []);
+      });
+
+  for (const [hands, least] of Object.entries({ bare: 56, gloved: 96 }))
+    test(`what is pressed is at least ${least} px wide and high for ${hands} hands`, async () => {
+      const anna = await Tablet.open(browser, server.url);
+      if (hands === 'gloved') await anna.page.click('[aria-label^="Gloves"]');
+      const small = [];
+      for (const mode of kModes) {
+        await anna.mode(mode);
+        small.push(...(await anna.page.evaluate(tooSmall, least)).map((what) => `${mode}: ${what}`));
+      }
+      await anna.close();
+      assert.deepEqual(small, []);
+    });
+});
+
+/** Controls that are shown and smaller than `least`; a label around an input counts as the input. */
+function tooSmall(least) {
+  const found = [];
+  for (const control of document.querySelectorAll('button, input:not([hidden]), select, textarea, a[href]')) {
+    const { width, height } = (control.closest('label') ?? control).getBoundingClientRect();
+    if (width === 0 && height === 0) continue;
+    if (Math.min(width, height) < least - 0.5) found.push(`${control.outerHTML.slice(0, 120)} ${Math.round(width)} x ${Math.round(height)}`);
+  }
+  return found;
+}
