@@ -1,6 +1,6 @@
 // The real server with the demo, and real browsers: what people do on tablets, and what happens when things break.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, beforeEach, describe, test } from 'node:test';
+import { after, afterEach, before, describe, test } from 'node:test';
 import { Probe } from './support/probe.mjs';
 import { Smokemap } from './support/smokemap.mjs';
 import { openBrowser, Tablet } from './support/tablet.mjs';
@@ -18,17 +18,19 @@ describe('tablets and the demo', { timeout: 900_000 }, () => {
     return opened;
   };
 
-  before(async () => (browser = await openBrowser()));
-  after(() => browser.close());
-  beforeEach(async () => {
+  before(async () => {
+    browser = await openBrowser();
     smokemap = new Smokemap();
     await smokemap.start();
+  });
+  after(async () => {
+    await browser?.close();
+    await smokemap?.dispose();
   });
   afterEach(async () => {
     const errors = tablets.flatMap(({ errors }) => errors);
     await Promise.all(tablets.map((opened) => opened.close()));
     tablets = [];
-    await smokemap.dispose();
     assert.deepEqual(errors, []);
   });
 
@@ -74,8 +76,8 @@ describe('tablets and the demo', { timeout: 900_000 }, () => {
   test('two tablets see each other and what the other marks', async () => {
     const [anna, bo] = [await tablet(), await tablet()];
     await anna.page.waitForSelector('.chip.people >> text=2');
-    const place = await anna.besideTheRobot(smokemap.url);
-    await anna.mark(place, 'Person', 'At the window');
+    const [x, y] = await anna.besideTheRobot(smokemap.url);
+    await anna.mark([x + 3, y + 3], 'Person', 'At the window');
     await bo.see('At the window');
     await bo.page.click('button:has-text("At the window")');
     await bo.page.click('[role=dialog] >> text=Remove');
@@ -95,14 +97,15 @@ describe('tablets and the demo', { timeout: 900_000 }, () => {
     smokemap.signal('SIGCONT');
     await anna.page.waitForSelector('text=STOP NOT CONFIRMED', { state: 'detached' });
     await anna.see('All robots are stopped.');
+    await anna.hold('.banner .hold');
+    await anna.page.waitForSelector('text=All robots are stopped.', { state: 'detached' });
   });
 
   test('a robot reaches a room that it has not seen', async () => {
     const anna = await tablet();
     const probe = await Probe.open(smokemap.url);
     const room = await probe.until(unseenRoom, kLookAround);
-    await anna.page.click('[aria-label="Show everything"]');
-    await anna.page.waitForTimeout(500);
+    await anna.showEverything();
     await anna.tap(room);
     await anna.page.click('[role=dialog] >> text=Send robot');
     await anna.hold('[role=dialog] .hold');

@@ -90,7 +90,7 @@ export class Tablet {
     const box = await this.page.locator(selector).boundingBox();
     await this.page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await this.page.mouse.down();
-    await this.page.waitForTimeout(1_000);
+    await this.page.waitForFunction(() => !document.querySelector('.hold.holding'));
     await this.page.mouse.up();
   }
 
@@ -112,6 +112,12 @@ export class Tablet {
       }
       return painted;
     });
+  }
+
+  /** Shows the whole map, and waits until it is painted. */
+  async showEverything() {
+    await this.page.click('[aria-label="Show everything"]');
+    await this.page.evaluate(() => new Promise((painted) => requestAnimationFrame(() => requestAnimationFrame(painted))));
   }
 
   /** Every act is with the server: nothing waits. */
