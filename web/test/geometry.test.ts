@@ -9,7 +9,7 @@ import { distanceToPolyline, distanceToSegment, nearestOnSegment } from '../src/
 import { applyAffine, fitSimilarity, invertAffine, toScreen, toView, viewToScreenAffine, type ViewState } from '../src/geometry/similarity';
 import { densify, simplify } from '../src/geometry/simplify';
 import { snapToWalls } from '../src/geometry/snap';
-import { between, randomSource } from './random';
+import { between, randomSource } from './support/random';
 
 const size = { width: 1180, height: 820 };
 const limits = { minResolution: 0.001, maxResolution: 10 };

@@ -2,76 +2,19 @@ import 'fake-indexeddb/auto';
 import { describe, expect, test } from 'vitest';
 import { backoffMs } from '../src/link/backoff';
 import { IdbStorage } from '../src/link/idb_storage';
-import { LiveLink, type LinkHandlers, type Position, type SocketLike, type Surroundings } from '../src/link/live_link';
+import { LiveLink, type LinkHandlers, type Position } from '../src/link/live_link';
 import { type Entry, MemoryStorage, Outbox, type OutboxStorage } from '../src/link/outbox';
 import { Api } from '../src/link/api';
 import type { Command } from '../src/wire/commands';
+import { FakeSurroundings, settle } from './support/fake_surroundings';
+import { between, randomSource } from './support/random';
 
-class FakeSocket implements SocketLike {
-  onopen: (() => void) | null = null;
-  onmessage: ((data: string | Uint8Array) => void) | null = null;
-  onclose: ((code: number) => void) | null = null;
-  readonly sent: Record<string, unknown>[] = [];
-  closed = false;
-  send(text: string): void {
-    this.sent.push(JSON.parse(text) as Record<string, unknown>);
-  }
-  close(): void {
-    this.closed = true;
-  }
-  say(message: object): void {
-    this.onmessage?.(JSON.stringify(message));
-  }
-  of(type: string): Record<string, unknown>[] {
-    return this.sent.filter((message) => message['type'] === type);
-  }
-}
-
-/** A browser without a browser: time passes when told, sockets are in memory. */
-class World implements Surroundings {
-  now = 1_000_000;
-  readonly sockets: FakeSocket[] = [];
-  #timers: { at: number; run: () => void }[] = [];
-  #ids = 0;
-  connect(): FakeSocket {
-    const socket = new FakeSocket();
-    this.sockets.push(socket);
-    return socket;
-  }
-  nowMs = (): number => this.now;
-  random = (): number => 0.5;
-  makeId = (): string => `id-${++this.#ids}`;
-  after = (ms: number, run: () => void): (() => void) => {
-    const timer = { at: this.now + ms, run };
-    this.#timers.push(timer);
-    return () => (this.#timers = this.#timers.filter((other) => other !== timer));
-  };
-  async pass(ms: number): Promise<void> {
-    const until = this.now + ms;
-    for (;;) {
-      const next = this.#timers.filter((timer) => timer.at <= until).sort((a, b) => a.at - b.at)[0];
-      if (!next) break;
-      this.#timers = this.#timers.filter((timer) => timer !== next);
-      this.now = next.at;
-      next.run();
-      await settle();
-    }
-    this.now = until;
-  }
-  get socket(): FakeSocket {
-    return this.sockets.at(-1)!;
-  }
-}
-
-const settle = async (): Promise<void> => {
-  for (let i = 0; i < 5; i++) await Promise.resolve();
-};
 const kWelcome = { type: 'welcome', device: 'd', role: 'commander', name: 'Anna', epoch: 7, seq: 3, server_ms: 5_000_000 };
 const poi: Command = { name: 'place_poi', data: { poi_id: 'p', kind: 'fire', frame: 'map', p: [1, 2], label: '' } };
 const goal: Command = { name: 'set_goal', data: { goal_id: 'g', robot: 'r', frame: 'map', p: [1, 2], heading: null } };
 
 async function start(storage: OutboxStorage = new MemoryStorage(), position: () => Position = () => ({ epoch: 0, seq: 0 })) {
-  const world = new World();
+  const world = new FakeSurroundings();
   const log: string[] = [];
   const drawn: (() => void)[] = [];
   const handlers: LinkHandlers = {
@@ -296,5 +239,102 @@ describe('the HTTP side', () => {
     await api.uploadPlan(new Blob(['x'], { type: 'application/pdf' }), 3);
     expect(seen[0]!.headers.get('Authorization')).toBe('Bearer secret');
     expect(seen[0]!.url).toBe('http://test/api/plans?page=3');
+  });
+});
+
+describe('a link that breaks again and again', () => {
+  /** A server that keeps a log, carries out each id once, and whose answers may be lost with the connection. */
+  function faultyServer(random: () => number) {
+    const done = new Set<string>();
+    const order: string[] = [];
+    const take = (message: Record<string, unknown>): object | undefined => {
+      if (message['type'] !== 'command') return undefined;
+      const id = message['id'] as string;
+      if (!done.has(id)) order.push(id);
+      done.add(id);
+      return random() < 0.6 ? { type: 'done', id, seq: order.length } : undefined;
+    };
+    return { order, take };
+  }
+
+  test('carries out every act once, in order, whatever is lost on the way', async () => {
+    for (let seed = 1; seed <= 40; seed++) {
+      const random = randomSource(seed);
+      const { world, link, outbox } = await start();
+      const server = faultyServer(random);
+      const made: string[] = [];
+      let answered = 0;
+      const deliver = (): void => {
+        const sent = world.socket.sent.slice(answered);
+        answered = world.socket.sent.length;
+        for (const message of sent) {
+          const answer = server.take(message);
+          if (answer) world.socket.say(answer);
+        }
+      };
+      const reconnect = async (): Promise<void> => {
+        world.socket.onclose?.(1006);
+        await world.pass(8_000);
+        answered = 0;
+        world.socket.onopen?.();
+        world.socket.say({ ...kWelcome, server_ms: world.now });
+        await settle();
+      };
+      await reconnect();
+      for (let i = 0; i < 12; i++) {
+        made.push(await link.send({ name: 'place_poi', data: { poi_id: `p${i}`, kind: 'fire', frame: 'map', p: [i, seed], label: '' } }));
+        if (random() < 0.7) deliver();
+        await settle();
+        if (random() < 0.3) await reconnect();
+      }
+      for (let i = 0; i < 30 && outbox.entries.length > 0; i++) {
+        await reconnect();
+        deliver();
+        await settle();
+      }
+      expect(outbox.entries).toEqual([]);
+      expect(server.order).toEqual(made);
+    }
+  });
+
+  test('is not brought down by anything that a server may say', async () => {
+    const random = randomSource(99);
+    const { world, link, log, welcome } = await start();
+    await welcome();
+    const words = ['{', 'null', '[]', '{"type":7}', '{"type":"delta"}', '{"type":"delta","part":"walls","set":7}', '{"type":"done"}', '{"type":"pong","t":"x","server_ms":1}', '{"type":"ink","device":"a","stroke_id":"b","points":[[1]]}'];
+    for (let i = 0; i < 300; i++) {
+      if (random() < 0.5) world.socket.onmessage?.(words[Math.floor(between(random, 0, words.length))]!);
+      else world.socket.onmessage?.(Uint8Array.from({ length: Math.floor(between(random, 0, 60)) }, () => Math.floor(between(random, 0, 256))));
+    }
+    expect(link.malformed).toBe(300);
+    expect(link.connected).toBe(true);
+    expect(log).toEqual(['welcome']);
+  });
+
+  test('knows the time of the server from before a reload until it is told better', async () => {
+    const world = new FakeSurroundings();
+    const outbox = await Outbox.open(new MemoryStorage());
+    const nothing = (): void => {};
+    const handlers = { welcome: nothing, delta: nothing, tiles: () => Promise.resolve(), done: nothing, refused: nothing, expired: nothing, ink: nothing, changed: nothing, unauthorised: nothing };
+    const link = new LiveLink(world, handlers, outbox, 'secret', () => ({ epoch: 0, seq: 0 }), 4_321);
+    expect(link.serverNowMs()).toBe(world.now + 4_321);
+    link.start();
+    world.socket.onopen?.();
+    world.socket.say({ ...kWelcome, server_ms: world.now + 17 });
+    expect(link.clockOffsetMs).toBe(17);
+  });
+});
+
+describe('what is kept beside the outbox', () => {
+  test('comes back by its name, and is gone when the device is turned away', async () => {
+    const storage = await IdbStorage.open('keeps');
+    expect(await storage.loadState('last')).toBeNull();
+    await storage.saveState('last', { a: new Uint8Array([1, 2]) });
+    await storage.saveState('preparation', { step: 3 });
+    const again = await IdbStorage.open('keeps');
+    expect(await again.loadState('last')).toEqual({ a: new Uint8Array([1, 2]) });
+    expect(await again.loadState('preparation')).toEqual({ step: 3 });
+    await again.forgetStates();
+    expect(await storage.loadState('last')).toBeNull();
   });
 });

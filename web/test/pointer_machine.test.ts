@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import { screenPoint } from '../src/geometry/points';
 import { type Decision, kIdle, type PointerSample, type PointerState, type Rules, step } from '../src/tools/pointer_machine';
-import { between, randomSource } from './random';
+import { between, randomSource } from './support/random';
 
 const ink: Rules = { wants: () => 'draw', fingerDraws: 'until pen' };
 const look: Rules = { wants: () => 'none', fingerDraws: 'never' };

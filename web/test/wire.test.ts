@@ -9,7 +9,7 @@ import { encode, parseServerMessage } from '../src/wire/messages';
 import { isPartName, parseTable, partNames } from '../src/wire/parts';
 import { decodeTile, kTileCells, parseTileFrame, unpackCells } from '../src/wire/tile_frame';
 import { apply, kEmptyWorld } from '../src/model/world';
-import { randomSource } from './random';
+import { randomSource } from './support/random';
 
 const folder = fileURLToPath(new URL('../../proto/examples/', import.meta.url));
 const names = readdirSync(folder);
