@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slam/align.hpp"
 #include "slam/pose_search.hpp"
 
 namespace smokemap {
@@ -18,8 +17,22 @@ constexpr double kAgree_m = 0.20;
 constexpr double kAgree_rad = 0.035;
 constexpr double kSigmaLoop_m = 0.03, kSigmaLoop_rad = 0.006;
 constexpr std::size_t kSearchPoints = 200;
+constexpr int kSearchLevels = 6;
+constexpr double kRegion_m = 4.0;      ///< between the middles of regions that are searched as a whole
+constexpr double kWideReach_m = 8.0;   ///< points farther away need finer angles
+constexpr int kWideJoint = 8;          ///< nodes that look for their place together
+constexpr double kAloneWithin = 0.85;  ///< a second place this good: nothing is said
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+/// Points for a search: near ones, an even share of them.
+std::vector<Point2> thinned(const std::vector<SurfacePoint>& joint, double reach_m) {
+  std::vector<Point2> points;
+  const std::size_t stride = std::max<std::size_t>(1, joint.size() / kSearchPoints);
+  for (std::size_t i = 0; i < joint.size(); i += stride)
+    if (joint[i].p.norm() < reach_m) points.push_back(joint[i].p);
+  return points;
+}
 
 /// Along the longest axis of the ellipse of positions.
 double largest_sigma_m(const Eigen::Matrix3d& covariance) {
@@ -82,16 +95,10 @@ bool LoopCloser::try_candidate(const PoseGraph& graph, const NodeScans& scans, i
                                Found& found) {
   const LoopParams& limits = params_.loops;
   draw_target(graph, scans, node, candidate.node, candidate.radius_m);
-  const std::vector<SurfacePoint> joint = joint_scan(graph, scans, node);
+  const std::vector<SurfacePoint> joint = joint_scan(graph, scans, node, limits.joint_nodes);
   if (joint.size() < index(params_.points.least_points) || target_.empty()) return false;
-
-  std::vector<Point2> known, points;
-  target_.for_each([&](const SurfaceMap::Surface& s) { known.push_back(s.p); });
-  const std::size_t stride = std::max<std::size_t>(1, joint.size() / kSearchPoints);
-  for (std::size_t i = 0; i < joint.size(); i += stride) points.push_back(joint[i].p);
-  const LikelihoodGrid grid(known, limits.cell_m, 1.2 * limits.cell_m, 6);
   const SearchWindow window{graph.nodes[index(node)].T_map_robot, candidate.radius_m, candidate.half_rad};
-  const auto coarse = search_pose(points, grid, window, limits.least_search_score, 0.6);
+  const auto coarse = search_pose(thinned(joint, 1e9), target_grid(), window, limits.least_search_score, 0.6);
   if (!coarse) return false;
 
   ++found.rejected;  // until it has passed everything
@@ -99,15 +106,75 @@ bool LoopCloser::try_candidate(const PoseGraph& graph, const NodeScans& scans, i
   const ScanAlignment fine = align(joint, target_, coarse->T_map_robot, params_.align);
   if (sigmas_of(graph.nodes[index(node)].T_map_robot, fine.T_map_robot, candidate.covariance) > limits.within_sigmas)
     return false;
-  if (fine.score < limits.least_align_score || !singles_agree(graph, scans, node, fine.T_map_robot)) return false;
-  const Pose2& T_map_old = graph.nodes[index(candidate.node)].T_map_robot;
+  const auto edge = verified(graph, scans, node, candidate.node, fine);
+  if (!edge) return false;
+  --found.rejected;
+  found.edges.push_back(*edge);
+  return true;
+}
+
+/// The edge from an old node, if the group of nodes and each of its scans alone say the same.
+std::optional<PoseEdge> LoopCloser::verified(const PoseGraph& graph, const NodeScans& scans, int node, int around,
+                                             const ScanAlignment& fine) const {
+  if (fine.score < params_.loops.least_align_score || !singles_agree(graph, scans, node, fine.T_map_robot))
+    return std::nullopt;
+  const Pose2& T_map_old = graph.nodes[index(around)].T_map_robot;
   const auto sqrt_info = edge_sqrt_information(params_.graph.pair_information * fine.information, T_map_old.heading(),
                                                kSigmaLoop_m, kSigmaLoop_rad);
-  if (!sqrt_info) return false;
-  --found.rejected;
-  found.edges.push_back(
-      {candidate.node, node, T_map_old.inverse() * fine.T_map_robot, *sqrt_info, EdgeKind::kLoop, LinkState::kKept});
-  return true;
+  if (!sqrt_info) return std::nullopt;
+  return PoseEdge{around, node, T_map_old.inverse() * fine.T_map_robot, *sqrt_info, EdgeKind::kLoop, LinkState::kKept};
+}
+
+std::optional<PoseEdge> LoopCloser::find_anywhere(const PoseGraph& graph, const NodeScans& scans, int node,
+                                                  int piece_begin) {
+  const LoopParams& limits = params_.loops;
+  const std::vector<SurfacePoint> joint = joint_scan(graph, scans, node, std::min(kWideJoint, node - piece_begin + 1));
+  const std::vector<Point2> points = thinned(joint, kWideReach_m);
+  if (points.size() < index(params_.points.least_points)) return std::nullopt;
+  std::vector<Point2> centers;
+  struct Place {
+    int around;
+    SearchResult found;
+  };
+  std::vector<Place> places;
+  for (int j = 0; j < piece_begin; ++j) {
+    const Point2 here = graph.nodes[index(j)].T_map_robot.translation();
+    if (std::any_of(centers.begin(), centers.end(), [&](const Point2& c) { return (c - here).norm() < kRegion_m; }))
+      continue;
+    centers.push_back(here);
+    draw_region(graph, scans, j, piece_begin);
+    if (target_.empty()) continue;
+    const SearchWindow window{Pose2(here, 0), 0.75 * kRegion_m, kPi};
+    if (const auto found = search_pose(points, target_grid(), window, limits.least_search_score, 0.6))
+      places.push_back({j, *found});
+  }
+  const auto best = std::max_element(places.begin(), places.end(),
+                                     [](const Place& a, const Place& b) { return a.found.score < b.found.score; });
+  if (best == places.end()) return std::nullopt;
+  double second = best->found.runner_up_score;
+  for (const Place& other : places) {
+    const Pose2 apart = best->found.T_map_robot.inverse() * other.found.T_map_robot;
+    if (apart.translation().norm() > 0.6 || std::abs(apart.heading()) > 0.3)
+      second = std::max(second, other.found.score);
+  }
+  if (second > kAloneWithin * best->found.score) return std::nullopt;
+  draw_region(graph, scans, best->around, piece_begin);
+  return verified(graph, scans, node, best->around, align(joint, target_, best->found.T_map_robot, params_.align));
+}
+
+/// Everything seen around a node before the node `end`.
+void LoopCloser::draw_region(const PoseGraph& graph, const NodeScans& scans, int around, int end) {
+  const Point2 middle = graph.nodes[index(around)].T_map_robot.translation();
+  target_.reset(middle, kTargetHalfSize_m);
+  for (int j = 0; j < end; ++j)
+    if ((graph.nodes[index(j)].T_map_robot.translation() - middle).norm() < 1.5 * kRegion_m)
+      target_.add(scans.surface[index(j)], graph.nodes[index(j)].T_map_robot);
+}
+
+LikelihoodGrid LoopCloser::target_grid() const {
+  std::vector<Point2> known;
+  target_.for_each([&](const SurfaceMap::Surface& s) { known.push_back(s.p); });
+  return {known, params_.loops.cell_m, 1.2 * params_.loops.cell_m, kSearchLevels};
 }
 
 /// The old visit: nodes driven just before and after `around`, never near `node` itself.
@@ -122,10 +189,11 @@ void LoopCloser::draw_target(const PoseGraph& graph, const NodeScans& scans, int
   }
 }
 
-std::vector<SurfacePoint> LoopCloser::joint_scan(const PoseGraph& graph, const NodeScans& scans, int node) const {
+std::vector<SurfacePoint> LoopCloser::joint_scan(const PoseGraph& graph, const NodeScans& scans, int node,
+                                                 int count) const {
   std::vector<SurfacePoint> joint;
   const Pose2 T_node_map = graph.nodes[index(node)].T_map_robot.inverse();
-  for (int i = node; i > std::max(-1, node - params_.loops.joint_nodes); --i) {
+  for (int i = node; i > std::max(-1, node - count); --i) {
     const Pose2 T_node_i = T_node_map * graph.nodes[index(i)].T_map_robot;
     const Eigen::Matrix2d R = T_node_i.rotation();
     for (const SurfacePoint& s : scans.surface[index(i)]) joint.push_back({T_node_i * s.p, R * s.normal, s.weight});

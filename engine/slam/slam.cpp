@@ -5,7 +5,6 @@
 
 #include "geometry/covariance.hpp"
 #include "maps/radar_image.hpp"
-#include "slam/back_end.hpp"
 #include "slam/radar_points.hpp"
 #include "slam/smoke.hpp"
 
@@ -44,7 +43,7 @@ const char* to_string(ScanFate fate) {
 
 class Slam::Impl {
  public:
-  explicit Impl(const SlamParams& params) : params_(params), front_(params), back_(params) {}
+  Impl(const SlamParams& params, GraphWork work) : params_(params), front_(params), worker_(params, work) {}
 
   void add_odometry(const Odometry& reading) {
     ++counters_.odometry;
@@ -57,10 +56,13 @@ class Slam::Impl {
   StampedPose latest() const;
   Trajectory trajectory() const;
 
+  bool take_over(const GraphUpdate* update);
+
   SlamParams params_;
   FrontEnd front_;
-  BackEnd back_;
+  PoseGraph graph_;  ///< nodes and the front end's edges as they come, the rest as of the newest update
   SlamCounters counters_;
+  GraphWorker worker_;
 
  private:
   ScanOutcome add_points(Stamp stamp, const std::string& robot, const ScanPoints& points);
@@ -152,7 +154,7 @@ ScanOutcome Slam::Impl::add_points(Stamp stamp, const std::string& robot, const 
   ScanOutcome outcome{stamp, tracked.fate, {}, std::nullopt, tracked.score};
   if (tracked.node) {
     keep_node(stamp, robot, points, tracked);
-    outcome.node = back_.graph().nodes.back().id;
+    outcome.node = graph_.nodes.back().id;
   }
   anchors_.push_back(
       {stamp, tracked.T_track_robot, std::max(0, static_cast<int>(T_track_nodes_.size()) - 1), tracked.covariance});
@@ -163,19 +165,27 @@ ScanOutcome Slam::Impl::add_points(Stamp stamp, const std::string& robot, const 
 void Slam::Impl::keep_node(Stamp stamp, const std::string& robot, const ScanPoints& points,
                            const FrontEnd::Tracked& tracked) {
   PoseNode node;
+  node.id = static_cast<int>(graph_.nodes.size());
   node.robot = robot;
   node.stamp = stamp;
-  node.T_map_robot = params_.T_map_start;
+  node.T_map_robot =
+      graph_.nodes.empty() ? params_.T_map_start : graph_.nodes.back().T_map_robot * tracked.T_node_robot;
   node.T_odom_robot = T_odom_robot_;
   node.hits_robot = points.hits_robot;
   node.free_ends_robot = points.free_ends_robot;
   PoseEdge edge;
+  edge.from = node.id - 1;
+  edge.to = node.id;
   edge.T_from_to = tracked.T_node_robot;
   edge.kind = tracked.kind;
   Eigen::Matrix3d covariance = 0.5 * (tracked.covariance + tracked.covariance.transpose());
   covariance.diagonal() += Eigen::Vector3d(1e-6, 1e-6, 1e-7);
   if (const auto sqrt_info = sqrt_information(covariance)) edge.sqrt_information = *sqrt_info;
-  back_.add_node(std::move(node), points.surface, edge);
+  if (node.id > 0) {
+    graph_.edges.insert(graph_.edges.begin() + node.id - 1, edge);
+  }
+  graph_.nodes.push_back(node);
+  worker_.add({std::move(node), points.surface, edge, tracked.fate == ScanFate::kNewPiece});
   T_track_nodes_.push_back(tracked.T_track_robot);
 }
 
@@ -185,14 +195,31 @@ void Slam::Impl::count(ScanFate fate) {
   counters_.lost += fate == ScanFate::kNewPiece;
 }
 
+/// Nodes the back end has not seen yet follow the last one it has.
+bool Slam::Impl::take_over(const GraphUpdate* update) {
+  if (!update) return false;
+  counters_.loops_tried = update->tried;
+  counters_.loops_closed = update->closed;
+  counters_.loops_rejected = update->rejected;
+  counters_.relocated = update->relocated;
+  const std::size_t known = update->T_map_nodes.size();
+  std::vector<PoseEdge> edges = update->steps;
+  for (std::size_t i = edges.size(); i + 1 < graph_.nodes.size(); ++i) edges.push_back(graph_.edges[i]);
+  for (std::size_t i = 0; i < graph_.nodes.size(); ++i)
+    graph_.nodes[i].T_map_robot =
+        i < known ? update->T_map_nodes[i] : graph_.nodes[i - 1].T_map_robot * edges[i - 1].T_from_to;
+  edges.insert(edges.end(), update->links.begin(), update->links.end());
+  graph_.edges = std::move(edges);
+  return update->moved;
+}
+
 /// Between two nodes the correction of each is blended in, so that a scan next to a node moves with it.
 Pose2 Slam::Impl::pose_of(const Anchor& anchor) const {
   if (T_track_nodes_.empty()) return params_.T_map_start * anchor.T_track_robot;
   const auto i = static_cast<std::size_t>(anchor.node);
-  const Pose2 from_last = back_.graph().nodes[i].T_map_robot * (T_track_nodes_[i].inverse() * anchor.T_track_robot);
+  const Pose2 from_last = graph_.nodes[i].T_map_robot * (T_track_nodes_[i].inverse() * anchor.T_track_robot);
   if (i + 1 >= T_track_nodes_.size()) return from_last;
-  const Pose2 from_next =
-      back_.graph().nodes[i + 1].T_map_robot * (T_track_nodes_[i + 1].inverse() * anchor.T_track_robot);
+  const Pose2 from_next = graph_.nodes[i + 1].T_map_robot * (T_track_nodes_[i + 1].inverse() * anchor.T_track_robot);
   const auto away = [&](std::size_t node) {
     const Pose2 step = T_track_nodes_[node].inverse() * anchor.T_track_robot;
     return step.translation().norm() + 0.5 * std::abs(step.heading());
@@ -203,7 +230,7 @@ Pose2 Slam::Impl::pose_of(const Anchor& anchor) const {
 
 Pose2 Slam::Impl::T_map_track() const {
   if (T_track_nodes_.empty()) return params_.T_map_start;
-  return back_.graph().nodes.back().T_map_robot * T_track_nodes_.back().inverse();
+  return graph_.nodes.back().T_map_robot * T_track_nodes_.back().inverse();
 }
 
 StampedPose Slam::Impl::latest() const {
@@ -225,7 +252,7 @@ Trajectory Slam::Impl::trajectory() const {
   return poses;
 }
 
-Slam::Slam(const SlamParams& params) : impl_(std::make_unique<Impl>(params)) {}
+Slam::Slam(const SlamParams& params, GraphWork work) : impl_(std::make_unique<Impl>(params, work)) {}
 Slam::~Slam() = default;
 Slam::Slam(Slam&&) noexcept = default;
 Slam& Slam::operator=(Slam&&) noexcept = default;
@@ -234,22 +261,12 @@ void Slam::add_odometry(const Odometry& odometry) { impl_->add_odometry(odometry
 Result<ScanOutcome> Slam::add_scan(const LaserScan& scan) { return impl_->add_scan(scan); }
 Result<ScanOutcome> Slam::add_sweep(const RadarSweep& sweep) { return impl_->add_sweep(sweep); }
 
-bool Slam::optimize(const Progress& progress) {
-  const bool moved = impl_->back_.optimize(progress);
-  impl_->counters_.loops_tried = impl_->back_.loops_tried();
-  impl_->counters_.loops_closed = impl_->back_.loops_closed();
-  impl_->counters_.loops_rejected = impl_->back_.loops_rejected();
-  return moved;
-}
-
-void Slam::polish(const Progress& progress) {
-  optimize(progress);
-  impl_->back_.polish(progress);
-}
+bool Slam::optimize(const Progress& progress) { return impl_->take_over(impl_->worker_.catch_up(progress).get()); }
+void Slam::polish(const Progress& progress) { impl_->take_over(impl_->worker_.polish(progress).get()); }
 
 StampedPose Slam::latest_pose() const { return impl_->latest(); }
 Pose2 Slam::T_map_odom() const { return impl_->T_map_odom(); }
-const PoseGraph& Slam::graph() const { return impl_->back_.graph(); }
+const PoseGraph& Slam::graph() const { return impl_->graph_; }
 Trajectory Slam::trajectory() const { return impl_->trajectory(); }
 const SlamCounters& Slam::counters() const { return impl_->counters_; }
 

@@ -12,6 +12,7 @@
 #include "maps/pose_graph.hpp"
 #include "maps/radar_sweep.hpp"
 #include "slam/front_end.hpp"
+#include "slam/graph_worker.hpp"
 #include "slam/slam_params.hpp"
 
 namespace smokemap {
@@ -39,6 +40,7 @@ struct SlamCounters {
   std::int64_t without_odometry = 0;  ///< predicted from the last velocity
   std::int64_t lost = 0;              ///< new pieces of map begun because nothing fitted for a while
   std::int64_t smoke_beams = 0;       ///< lidar echoes the radar saw through
+  std::int64_t relocated = 0;         ///< new pieces that were found again in the map, wherever it was
   std::int64_t loops_tried = 0;
   std::int64_t loops_closed = 0;
   std::int64_t loops_rejected = 0;  ///< found, then refused by verification or by the robust solve
@@ -47,14 +49,16 @@ struct SlamCounters {
 /// SLAM of one robot: scans, sweeps and odometry in, poses and a pose graph out. Frames: map = pose of the first scan
 /// (x forward) unless params.T_map_start says otherwise.
 ///
-/// Online and incremental: `add_scan` costs a bounded few milliseconds. `optimize` closes loops and solves the graph;
-/// the caller decides when (every second or every few nodes; at the end with `polish`). Synchronous, not thread-safe,
-/// deterministic: the same calls give the same bytes.
-/// Method: thresholds from the prediction's own errors (KISS-ICP), point-to-line Gauss-Newton on oriented surface
-/// points for both sensors (CFEAR for radar), branch-and-bound loop search, robust pose graph, pairwise re-matching.
+/// Online and incremental: `add_scan` costs a bounded few milliseconds and never waits for the graph. Loops are closed
+/// and the graph is solved by a back end: when `optimize` is called (offline, or where the caller owns a thread for
+/// it), or in the background on a thread of its own, where `optimize` only takes over what is ready. Nodes are worked
+/// off in their order whoever does it, so that after `polish` both give the same bytes, however fast the log was
+/// played. To be called from one thread. Method: thresholds from the prediction's own errors (KISS-ICP), point-to-line
+/// Gauss-Newton on oriented surface points for both sensors (CFEAR for radar), branch-and-bound loop search, robust
+/// pose graph, pairwise re-matching.
 class Slam {
  public:
-  explicit Slam(const SlamParams& params = {});
+  explicit Slam(const SlamParams& params = {}, GraphWork work = GraphWork::kWhenAsked);
   ~Slam();
   Slam(Slam&&) noexcept;
   Slam& operator=(Slam&&) noexcept;
@@ -65,10 +69,12 @@ class Slam {
   /// The same for a radar turn. When lidar scans come too, the sweep is used to find the lidar's smoke echoes.
   Result<ScanOutcome> add_sweep(const RadarSweep& sweep);
 
-  /// Searches loops for nodes not searched yet, solves when there is something new. Cheap when nothing is.
+  /// Takes over the newest node poses and loops. Without a background, searches and solves for the nodes not worked off
+  /// yet first. Cheap when nothing is new.
   /// @return true when node poses changed
   bool optimize(const Progress& progress = {});
-  /// Re-matches every node against its neighbours and solves, a few rounds. For the end of a log or for idle time.
+  /// Re-matches every node against its neighbours and solves, a few rounds. For the end of a log or for idle time;
+  /// waits for the background to catch up.
   void polish(const Progress& progress = {});
 
   StampedPose latest_pose() const;  ///< in map; covariance since the last node
