@@ -15,6 +15,8 @@ constexpr double kPinSigma_cells = 4;  ///< how far a good alignment of bent map
 constexpr double kPinWeight = 0.06;    ///< score lost at one sigma
 constexpr double kPinCap = 9;          ///< in squared sigmas: one wrong pin must not rule out everything
 
+constexpr double kApart = 0.08;  ///< of b's longer side: alignments nearer than this are one
+
 /// Shift that brings each pin of a, already turned and scaled, onto its partner.
 std::vector<Point2> pin_shifts(const Eigen::Affine2d& turned, const MapRaster& a, const MapRaster& b,
                                const std::vector<Pin>& pins) {
@@ -64,7 +66,8 @@ class ShiftSearch {
         const double score = correlation.at<float>(y, x) / norm - pin_cost(shifts, shift);
         if (score > best.score) best.score = score, best_shift = shift;
       }
-    best.cells_b_a.pretranslate(best_shift);
+    best.T_b_a_px.pretranslate(best_shift);  // cells so far
+    best.T_b_a_px = pixels_of_cells(b_) * best.T_b_a_px * pixels_of_cells(a).inverse();
     return best;
   }
 
@@ -85,13 +88,37 @@ class ShiftSearch {
 
 Eigen::Matrix2d rotation(double angle_rad) { return Eigen::Rotation2Dd(angle_rad).toRotationMatrix(); }
 
-/// Mean distance between where two alignments put the corners of a.
+/// Mean distance in pixels of b between where two alignments put the corners of a.
 double difference(const MapAlignment& one, const MapAlignment& two, const MapRaster& a) {
   double sum = 0;
   for (const Point2& corner :
        {Point2(0, 0), Point2(a.depth.cols, 0), Point2(0, a.depth.rows), Point2(a.depth.cols, a.depth.rows)})
-    sum += (one.cells_b_a * corner - two.cells_b_a * corner).norm();
+    sum += (one.T_b_a_px * a.to_px(corner) - two.T_b_a_px * a.to_px(corner)).norm();
   return sum / 4;
+}
+
+/// The best of every turn first, because parts and bent maps may look most alike when laid wrongly; then the best of
+/// the rest; none twice.
+std::vector<MapAlignment> choose(std::vector<std::vector<MapAlignment>>& by_turn, const MapRaster& a, double apart,
+                                 size_t count) {
+  const auto better = [](const MapAlignment& one, const MapAlignment& two) { return one.score > two.score; };
+  std::vector<MapAlignment> chosen, rest;
+  for (std::vector<MapAlignment>& turned : by_turn) {
+    std::stable_sort(turned.begin(), turned.end(), better);
+    chosen.push_back(turned.front());
+    rest.insert(rest.end(), turned.begin() + 1, turned.end());
+  }
+  std::stable_sort(chosen.begin(), chosen.end(), better);
+  if (chosen.size() > count) chosen.resize(count);
+  std::stable_sort(rest.begin(), rest.end(), better);
+  for (const MapAlignment& candidate : rest) {
+    if (chosen.size() >= count) break;
+    if (std::none_of(chosen.begin(), chosen.end(),
+                     [&](const MapAlignment& other) { return difference(candidate, other, a) < apart; }))
+      chosen.push_back(candidate);
+  }
+  std::stable_sort(chosen.begin(), chosen.end(), better);
+  return chosen;
 }
 
 }  // namespace
@@ -100,14 +127,14 @@ std::vector<MapAlignment> find_alignments(const MapRaster& a, const MapRaster& b
                                           bool allow_mirror, int count) {
   const ShiftSearch search(b);
   const double scale = std::sqrt(b.free_cells / std::max(1.0, a.free_cells));
-  std::vector<MapAlignment> all;
+  std::vector<std::vector<MapAlignment>> by_turn;
   for (int mirror = 0; mirror <= (allow_mirror ? 1 : 0); ++mirror)
     for (int quarter = 0; quarter < 4; ++quarter) {
       // Straighten a's walls, mirror, turn by quarters, then into b's wall direction; stretch along b's walls.
       const Eigen::Matrix2d flip = Eigen::Vector2d(mirror ? -1 : 1, 1).asDiagonal();
       const Eigen::Matrix2d straight =
           rotation(quarter * std::numbers::pi / 2) * flip * rotation(-a.wall_direction_rad);
-      std::vector<MapAlignment> turned;
+      std::vector<MapAlignment>& turned = by_turn.emplace_back();
       for (const double size : kScales)
         for (const double stretch : kStretches) {
           const Eigen::Matrix2d scaling =
@@ -115,20 +142,8 @@ std::vector<MapAlignment> find_alignments(const MapRaster& a, const MapRaster& b
           // Wall directions are modulo 90 degrees: take the smaller of the two equal turns.
           turned.push_back(search.best_shift(a, rotation(b.wall_direction_rad) * scaling * straight, pins));
         }
-      all.insert(all.end(), turned.begin(), turned.end());
     }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const MapAlignment& one, const MapAlignment& two) { return one.score > two.score; });
-  std::vector<MapAlignment> chosen;
-  const double apart = 0.08 * std::max(b.depth.cols, b.depth.rows);
-  for (const MapAlignment& candidate : all) {
-    const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&](const MapAlignment& other) {
-      return difference(candidate, other, a) < apart;
-    });
-    if (is_new) chosen.push_back(candidate);
-    if (static_cast<int>(chosen.size()) >= count) break;
-  }
-  return chosen;
+  return choose(by_turn, a, kApart * b.px_per_cell * std::max(b.depth.cols, b.depth.rows), static_cast<size_t>(count));
 }
 
 }  // namespace smokemap

@@ -10,7 +10,7 @@ namespace smokemap {
 
 /// One way of laying map a over map b as a whole.
 struct MapAlignment {
-  Eigen::Affine2d cells_b_a = Eigen::Affine2d::Identity();  ///< cell of raster a -> cell of raster b
+  Eigen::Affine2d T_b_a_px = Eigen::Affine2d::Identity();  ///< pixel of a -> pixel of b
   double score = 0;  ///< likeness of the two depth images under it, 0..1, less what the pins cost
 };
 

@@ -5,7 +5,6 @@
 // person.
 #include "matching/match.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -14,28 +13,16 @@
 #include <utility>
 
 #include "core/check.hpp"
-#include "matching/align.hpp"
+#include "matching/hypotheses.hpp"
 #include "matching/region_pairs.hpp"
-#include "matching/warp.hpp"
 
 namespace smokemap {
 namespace {
 
-constexpr int kCoarse_cells = 44;
-constexpr int kFine_cells = 72;
-constexpr double kCoarseSlope_cells = 3;
-constexpr double kFineSlope_cells = 4;
 constexpr double kPinReach_px = 10;
 constexpr double kClearMargin = 0.25;  ///< from here on the runner-up does not matter
 constexpr double kDoubtfulMargin = 0.08;
 constexpr double kDoubtfulLikeness = 0.55;
-
-struct Hypothesis {
-  Eigen::Matrix2d turn_b_a = Eigen::Matrix2d::Identity();
-  Warp warp;
-  std::vector<RegionPair> pairs;
-  double score = 0;
-};
 
 std::optional<int> region_near(const Segmentation& map, const Point2& p_px) {
   const int reach = static_cast<int>(kPinReach_px);
@@ -81,54 +68,6 @@ std::vector<Pin> pins_and_confirmed(const Segmentation& a, const Segmentation& b
   return pins;
 }
 
-/// Share of a's area whose region has a partner, weighted by how alike they are.
-double explained(const Segmentation& a, const std::vector<RegionPair>& pairs) {
-  double sum = 0, total = 0;
-  for (const Region& region : a.regions) {
-    double best = 0;
-    for (const RegionPair& pair : pairs)
-      if (pair.label_a == region.label) best = std::max(best, pair.confidence);
-    sum += best * std::sqrt(region.area_px);
-    total += std::sqrt(region.area_px);
-  }
-  return total > 0 ? sum / total : 0;
-}
-
-/// The turn or mirrored turn nearest to a linear map.
-Eigen::Matrix2d nearest_turn(const Eigen::Matrix2d& linear) {
-  const Eigen::JacobiSVD<Eigen::Matrix2d> svd(linear, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
-}
-
-std::vector<Hypothesis> hypotheses(const Segmentation& a, const Segmentation& b, const std::vector<Pin>& pins,
-                                   const PairRules& rules, const MatchParams& params) {
-  const MapRaster coarse_a = make_raster(a, kCoarse_cells, kCoarseSlope_cells);
-  const MapRaster coarse_b = make_raster(b, kCoarse_cells, kCoarseSlope_cells);
-  const MapRaster fine_a = make_raster(a, kFine_cells, kFineSlope_cells);
-  const MapRaster fine_b = make_raster(b, kFine_cells, kFineSlope_cells);
-  std::vector<Hypothesis> all;
-  for (const MapAlignment& coarse : find_alignments(coarse_a, coarse_b, pins, params.allow_mirror, params.candidates)) {
-    // From the coarse cells to the fine ones, through pixels.
-    MapAlignment fine = coarse;
-    Eigen::Affine2d coarse_of_fine_a = Eigen::Affine2d::Identity(), fine_of_coarse_b = Eigen::Affine2d::Identity();
-    coarse_of_fine_a.linear() *= fine_a.px_per_cell / coarse_a.px_per_cell;
-    coarse_of_fine_a.translation() = coarse_a.to_cells(fine_a.origin_px);
-    fine_of_coarse_b.linear() *= coarse_b.px_per_cell / fine_b.px_per_cell;
-    fine_of_coarse_b.translation() = fine_b.to_cells(coarse_b.origin_px);
-    fine.cells_b_a = fine_of_coarse_b * coarse.cells_b_a * coarse_of_fine_a;
-    Hypothesis hypothesis;
-    hypothesis.turn_b_a = nearest_turn(fine.cells_b_a.linear());
-    hypothesis.warp = bend(fine, fine_a, fine_b, pins);
-    const PairScores scores = score_pairs(a, b, fine_a, fine_b, hypothesis.warp, rules);
-    hypothesis.pairs = choose_pairs(scores, rules, params.allow_many_to_many);
-    hypothesis.score = hypothesis.warp.score + 0.5 * explained(a, hypothesis.pairs) + 0.5 * (coarse.score - 1);
-    all.push_back(std::move(hypothesis));
-  }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Hypothesis& one, const Hypothesis& two) { return one.score > two.score; });
-  return all;
-}
-
 std::set<std::pair<int, int>> keys(const std::vector<RegionPair>& pairs) {
   std::set<std::pair<int, int>> result;
   for (const RegionPair& pair : pairs) result.emplace(pair.label_a, pair.label_b);
@@ -163,14 +102,24 @@ std::optional<int> most_telling_region(const Segmentation& a, const Matching& ma
   return most > 0 ? found : std::nullopt;
 }
 
+std::vector<RegionPair> pairs_of(const Hypothesis& hypothesis, const PairRules& rules) {
+  const StructureMatch& structure = hypothesis.structure;
+  std::vector<RegionPair> pairs = joined_pairs(structure.partner, hypothesis.scores, rules.forbidden);
+  for (RegionPair& pair : pairs) {
+    const int i = pair.label_a - 1, j = pair.label_b - 1;
+    pair.confidence *= std::clamp(0.5 * structure.certainty(i, j) + 0.25 * (1 + structure.support(i)), 0.0, 1.0);
+  }
+  return pairs;
+}
+
 void finish(const Segmentation& a, const PairRules& rules, const std::vector<RegionPair>& verdicts,
-            std::vector<Hypothesis>& all, Matching& matching) {
-  matching.pairs = all.front().pairs;
+            const std::vector<Hypothesis>& all, Matching& matching) {
+  matching.pairs = pairs_of(all.front(), rules);
   matching.turn_b_a = all.front().turn_b_a;
   matching.margin = 1;
   for (size_t i = 1; i < all.size(); ++i)
-    if (disagreement(matching.pairs, all[i].pairs) > 0.3) {
-      matching.runner_up = all[i].pairs;
+    if (std::vector<RegionPair> other = pairs_of(all[i], rules); disagreement(matching.pairs, other) > 0.3) {
+      matching.runner_up = std::move(other);
       matching.margin = std::clamp((all.front().score - all[i].score) / kClearMargin, 0.0, 1.0);
       break;
     }
@@ -206,7 +155,7 @@ Result<Matching> match(const Segmentation& a, const Segmentation& b, const std::
                 std::string("the ") + (a.regions.empty() ? "first" : "second") + " map has no region to match");
   const Result<PairRules> rules = make_rules(a, b, pins, verdicts);
   if (!rules) return rules.error();
-  std::vector<Hypothesis> all = hypotheses(a, b, pins_and_confirmed(a, b, pins, verdicts), *rules, params);
+  const std::vector<Hypothesis> all = find_hypotheses(a, b, pins_and_confirmed(a, b, pins, verdicts), *rules, params);
   Matching matching;
   finish(a, *rules, verdicts, all, matching);
   return matching;

@@ -9,7 +9,7 @@
 namespace smokemap {
 
 struct MatchParams {
-  int candidates = 6;              ///< alignments bent and compared in full
+  int candidates = 8;              ///< alignments bent and compared in full
   bool allow_many_to_many = true;  ///< two regions of one map may be one region of the other
   bool allow_mirror = false;       ///< a drawing seen from below; only when a person says so
 

@@ -42,6 +42,13 @@ cv::Mat depth_image(const cv::Mat& free_cells, double slope_cells) {
 
 }  // namespace
 
+Eigen::Affine2d pixels_of_cells(const MapRaster& raster) {
+  Eigen::Affine2d result = Eigen::Affine2d::Identity();
+  result.linear() *= raster.px_per_cell;
+  result.translation() = raster.origin_px;
+  return result;
+}
+
 MapRaster make_raster(const Segmentation& map, int side_cells, double slope_cells) {
   const cv::Rect box = cv::boundingRect(map.labels != 0);
   MapRaster raster;

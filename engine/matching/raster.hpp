@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 
 #include "geometry/pose2.hpp"
@@ -20,6 +20,9 @@ struct MapRaster {
   Point2 to_px(const Point2& p_cells) const { return origin_px + px_per_cell * p_cells; }
   Point2 to_cells(const Point2& p_px) const { return (p_px - origin_px) / px_per_cell; }
 };
+
+/// Cell -> pixel of the picture.
+Eigen::Affine2d pixels_of_cells(const MapRaster& raster);
 
 /// @param side_cells  longer side of the free space's box, without the margin
 /// @param slope_cells half width of the ramp of `depth`

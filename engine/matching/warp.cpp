@@ -86,8 +86,9 @@ double root_mean_square_stretch(const MapRaster& a, const cv::Mat& moves, double
 }  // namespace
 
 Warp bend(const MapAlignment& alignment, const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins) {
-  const cv::Mat rigid = affine_field(alignment.cells_b_a, a.depth.size());
-  const double scale = std::sqrt(std::abs(alignment.cells_b_a.linear().determinant()));
+  const Eigen::Affine2d cells_b_a = pixels_of_cells(b).inverse() * alignment.T_b_a_px * pixels_of_cells(a);
+  const cv::Mat rigid = affine_field(cells_b_a, a.depth.size());
+  const double scale = std::sqrt(std::abs(cells_b_a.linear().determinant()));
   cv::Mat gx, gy, moves(a.depth.size(), CV_32FC2, cv::Scalar::all(0));
   cv::Sobel(b.depth, gx, CV_32F, 1, 0, 3, 1.0 / 8);
   cv::Sobel(b.depth, gy, CV_32F, 0, 1, 3, 1.0 / 8);
@@ -99,6 +100,7 @@ Warp bend(const MapAlignment& alignment, const MapRaster& a, const MapRaster& b,
       pull_to_pins(a, b, pins, 2 * stage.smooth_cells, rigid, moves);
     }
   Warp warp;
+  warp.scale = scale;
   warp.cells_b = rigid + moves;
   const double density = scale * scale;  // cells of b that one cell of a covers
   warp.likeness = cosine(look_up(b.depth, warp.cells_b), a.depth, a.depth.dot(a.depth));

@@ -130,7 +130,7 @@ SegmentationParams segmentation_params(MapKind kind) {
 
 SegmentationParams matching_segmentation_params() {
   SegmentationParams params;
-  params.min_room_ratio = 1.5;
+  params.min_room_ratio = 0.05;
   return params;
 }
 

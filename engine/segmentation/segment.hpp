@@ -24,8 +24,8 @@ struct SegmentationParams {
 /// The parameters for a kind of map. They differ for sketches, which have no furniture and name small niches.
 SegmentationParams segmentation_params(MapKind kind);
 
-/// The parameters for maps that are to be matched, the same for both: only regions large enough to be told apart on a
-/// drawing.
+/// The parameters for maps that are to be matched, the same for both: small rooms stay, because people draw them and
+/// matching tells them apart by what lies around them.
 SegmentationParams matching_segmentation_params();
 
 /// Splits free space into regions (rooms, corridors).

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "maps/correspondence.hpp"
+#include "maps/segmentation.hpp"
+#include "matching/align.hpp"
+#include "matching/match.hpp"
+#include "matching/region_pairs.hpp"
+#include "matching/structure_match.hpp"
+#include "matching/warp.hpp"
+
+namespace smokemap {
+
+/// What people have said about pairs, as matrices over (region of a, region of b); regions by label - 1.
+struct PairRules {
+  Eigen::MatrixXi forced;     ///< 1: confirmed by a verdict or bound by a pin
+  Eigen::MatrixXi forbidden;  ///< 1: rejected
+};
+
+/// One way of understanding map a as map b: how it lies there, how it is bent, and which region is which.
+struct Hypothesis {
+  MapAlignment alignment;
+  Eigen::Matrix2d turn_b_a = Eigen::Matrix2d::Identity();  ///< nearest turn (or mirrored turn) to the alignment
+  Warp warp;
+  PairScores scores;
+  StructureMatch structure;
+  double score = 0;  ///< hypotheses are compared by it
+};
+
+/// The hypotheses for two maps, best first, no two with the same pairs.
+///
+/// Each comes from one candidate alignment: bent until walls meet, regions assigned by place, size and the structure
+/// around them. The best are then laid again as their own pairs ask, which corrects an alignment that was right about
+/// the rooms in the middle and wrong about the outer ones, and solved again.
+std::vector<Hypothesis> find_hypotheses(const Segmentation& a, const Segmentation& b, const std::vector<Pin>& pins,
+                                        const PairRules& rules, const MatchParams& params);
+
+}  // namespace smokemap
