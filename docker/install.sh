@@ -33,5 +33,8 @@ if ! node_is_new_enough node && ! node_is_new_enough "$node_home/node_modules/.b
   case "$(uname -m)" in aarch64) node_arch=arm64 ;; *) node_arch=x64 ;; esac
   echo "smokemap: installing Node.js 20 from npm into $node_home"
   as_root mkdir -p "$node_home"
-  as_root npm install --silent --no-fund --no-audit --prefix "$node_home" "node-linux-$node_arch@20.19.5" npm@11.6.2
+  as_root npm install --loglevel=error --no-fund --no-audit --prefix "$node_home" "node-linux-$node_arch@20.19.5" npm@11.6.2 || {
+    echo "smokemap: Node.js 20 could not be installed from npm (see above); any Node.js from 20.19 on the PATH does as well" >&2
+    exit 1
+  }
 fi
