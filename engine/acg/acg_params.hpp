@@ -13,10 +13,11 @@ struct AcgParams {
   double stretch_length_m = 4.0;        ///< over this length the local stretch changes
 
   // What a sensor saw.
-  double sigma_point_m = 0.03;   ///< lidar point to wall face
-  double sigma_end_m = 0.05;     ///< end of a wall (door jamb) as seen
-  double min_piece_m = 0.25;     ///< shorter straight pieces of a scan say nothing about a wall
-  double node_spacing_m = 0.35;  ///< nodes nearer to the one before (and turned less than 20 degrees) are left out
+  double sigma_point_m = 0.03;        ///< lidar point to wall face
+  double sigma_end_m = 0.05;          ///< end of a wall (door jamb) as seen
+  double sigma_seen_corner_m = 0.08;  ///< crossing of two faces against the plan's corner
+  double min_piece_m = 0.25;          ///< shorter straight pieces of a scan say nothing about a wall
+  double node_spacing_m = 0.35;       ///< nodes nearer to the one before (and turned less than 20 degrees) are left out
 
   // Association.
   double gate_start_m = 1.0;

@@ -11,6 +11,12 @@
 #include "geometry/angle.hpp"
 
 namespace smokemap {
+namespace {
+
+constexpr int kWarmRounds = 1;
+constexpr double kWarmWay_m = 4.0;  ///< more new way than this is no small growth
+
+}  // namespace
 
 Result<Ok> AcgParams::validate() const {
   return ParamCheck("AcgParams")
@@ -59,9 +65,9 @@ MergedMap AutoCompleteGraph::Impl::read_out(const PoseGraph& graph, const SolveI
   }
   std::vector<bool> there;
   if (plan && !l.state.corners.empty()) {
-    SolvedPlan solved{&layout, &*plan, &l.state, {}, l.linked_m, {}, l.sigma_m, input.links};
+    SolvedPlan solved{&layout, &*plan, &l.state, {}, l.linked_m, {}, l.sigma_m, input.corners};
     const std::vector<double> no_ends(plan->walls.size(), 0);
-    solved.evidence = read_beams(nodes.views(), nodes.spaced(), *plan, l.state, no_ends).walls;
+    solved.evidence = l.beams.read(nodes.views(), nodes.spaced(), *plan, l.state, no_ends).walls;
     judge_walls(solved.evidence, l);
     solved.wall_states = l.walls;
     read_out_plan(solved, params, out);
@@ -74,26 +80,34 @@ MergedMap AutoCompleteGraph::Impl::read_out(const PoseGraph& graph, const SolveI
   return out;
 }
 
+/// Rounds over everything; a graph that only grew a little since the last time needs but the last of them.
+Result<Ok> AutoCompleteGraph::Impl::correct(Learnt& l, bool warm, const Progress& progress, SolveInput& last) const {
+  const int first = warm ? std::max(0, params.rounds - kWarmRounds) : 0;
+  for (int k = first; k < params.rounds; ++k) {
+    const PoseRange free_poses{0, k < params.rounds / 2 ? 0 : nodes.size()};
+    const double sharpness = std::pow(0.6, k + 1);
+    if (const auto done = round(l, nodes.spaced(), sharpness, free_poses, progress, &last); !done) return done.error();
+    progress.tell(0.6 + 0.3 * (k + 1) / params.rounds, "correcting plan and map");
+  }
+  if (l.sigma_m.size() == plan->corners.size() && l.updates % params.covariance_every != 0) return Ok{};
+  auto sigmas = corner_sigmas_m(last, params, l.state);
+  if (!sigmas) return sigmas.error();
+  l.sigma_m = std::move(*sigmas);
+  return Ok{};
+}
+
 Result<MergedMap> AutoCompleteGraph::Impl::update(const PoseGraph& graph, const Progress& progress) {
   Learnt work = learnt;
-  nodes.take(graph, work.state);
+  const GraphChange change = nodes.take(graph, work.state);
+  if (change == GraphChange::kAnother) work.beams = {};
   SolveInput input;
   if (plan && nodes.size() > 0) {
+    bool warm = work.aligned && change == GraphChange::kGrown && !words_changed;
     if (!work.aligned) work.aligned = align(work);
     if (work.aligned) {
+      warm = warm && nodes.way_m().back() - work.taken_way_m < kWarmWay_m;
       if (const auto done = take_up(work, progress); !done) return done.error();
-      double sharpness = 0.6;
-      for (int k = 0; k < params.rounds; ++k, sharpness *= 0.6) {
-        const bool poses_fixed = k < params.rounds / 2;
-        if (const auto done = round(work, nodes.spaced(), sharpness, poses_fixed, progress, &input); !done)
-          return done.error();
-        progress.tell(0.6 + 0.3 * (k + 1) / params.rounds, "correcting plan and map");
-      }
-      if (work.sigma_m.size() != plan->corners.size() || work.updates % params.covariance_every == 0) {
-        auto sigmas = corner_sigmas_m(input, params, work.state);
-        if (!sigmas) return sigmas.error();
-        work.sigma_m = std::move(*sigmas);
-      }
+      if (const auto done = correct(work, warm, progress, input); !done) return done.error();
       ++work.updates;
     } else {
       work.sigma_m.assign(plan->corners.size(), start ? 1.0 : 10.0);
@@ -102,6 +116,7 @@ Result<MergedMap> AutoCompleteGraph::Impl::update(const PoseGraph& graph, const 
   MergedMap out = read_out(graph, input, work);
   out.revision = ++revision;
   learnt = std::move(work);
+  words_changed = false;
   return out;
 }
 
@@ -127,6 +142,8 @@ void AutoCompleteGraph::clear_plan() {
   impl_->start.reset();
   impl_->anchors.clear();
   impl_->judgements.clear();
+  impl_->pins.clear();
+  impl_->lengths_m.clear();
   const GraphState poses{impl_->learnt.state.poses, {}, 0, 0, {}};
   impl_->learnt = {};
   impl_->learnt.state = poses;
@@ -140,15 +157,45 @@ void AutoCompleteGraph::set_start(const PlanStart& start) {
 
 void AutoCompleteGraph::add_anchor(const std::string& id, const Point2& p_layout_px, const Point2& p_map) {
   impl_->anchors[id] = {p_layout_px, p_map};
+  impl_->words_changed = true;
   if (impl_->anchors.size() == 2 && !impl_->start) impl_->learnt.aligned = false;
 }
 
-void AutoCompleteGraph::remove_anchor(const std::string& id) { impl_->anchors.erase(id); }
+void AutoCompleteGraph::remove_anchor(const std::string& id) {
+  impl_->anchors.erase(id);
+  impl_->words_changed = true;
+}
 
 Result<Ok> AutoCompleteGraph::judge_wall(int layout_wall, WallJudgement judgement) {
   if (!impl_->plan || layout_wall < 0 || layout_wall >= static_cast<int>(impl_->plan->walls.size()))
     return fail(Errc::kNotFound, "the plan has no wall " + std::to_string(layout_wall));
   impl_->judgements[layout_wall] = judgement;
+  impl_->words_changed = true;
+  return Ok{};
+}
+
+Result<Ok> AutoCompleteGraph::pin_corner(int layout_corner, const std::optional<Point2>& p_map) {
+  if (!impl_->plan || layout_corner < 0 || layout_corner >= static_cast<int>(impl_->plan->corners.size()))
+    return fail(Errc::kNotFound, "the plan has no corner " + std::to_string(layout_corner));
+  if (p_map && !p_map->allFinite()) return fail(Errc::kInvalidArgument, "a pin's place is not finite");
+  if (p_map)
+    impl_->pins[layout_corner] = *p_map;
+  else
+    impl_->pins.erase(layout_corner);
+  impl_->words_changed = true;
+  return Ok{};
+}
+
+Result<Ok> AutoCompleteGraph::set_wall_length(int layout_wall, const std::optional<double>& length_m) {
+  if (!impl_->plan || layout_wall < 0 || layout_wall >= static_cast<int>(impl_->plan->walls.size()))
+    return fail(Errc::kNotFound, "the plan has no wall " + std::to_string(layout_wall));
+  if (length_m && !(*length_m > 0.05 && *length_m < 1000))
+    return fail(Errc::kInvalidArgument, "a wall is not " + std::to_string(*length_m) + " m long");
+  if (length_m)
+    impl_->lengths_m[layout_wall] = *length_m;
+  else
+    impl_->lengths_m.erase(layout_wall);
+  impl_->words_changed = true;
   return Ok{};
 }
 

@@ -196,8 +196,11 @@ std::vector<Point2> first_hits(const std::vector<NodeView>& views, const GraphSt
                                double reach_m) {
   std::vector<Point2> all;
   double way = 0;
+  std::size_t before = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    if (i > 0) way += (state.pose(i).translation() - state.pose(i - 1).translation()).norm();
+    if (views[i].robot != views.front().robot) continue;
+    way += (state.pose(i).translation() - state.pose(before).translation()).norm();
+    before = i;
     if (way > way_m) break;
     const Pose2 pose = state.pose(i);
     // Pieces rather than single hits: people and small things have none.

@@ -78,4 +78,13 @@ void drop_immature(const std::vector<double>& linked_m, const PlanModel& plan, c
   }
 }
 
+void drop_immature(const std::vector<double>& linked_m, const PlanModel& plan, const AcgParams& params,
+                   std::vector<CornerLink>& links) {
+  for (CornerLink& link : links)
+    for (const int wall : link.walls) {
+      const auto w = static_cast<std::size_t>(wall);
+      if (!mature(plan.walls[w], linked_m[w], params)) link.weight = 0;
+    }
+}
+
 }  // namespace smokemap

@@ -22,8 +22,10 @@ double plan_tension(const PlanModel& plan, const GraphState& state, const AcgPar
 /// Evidence over which length lets a wall move by itself.
 bool mature(const PlanEdge& wall, double linked_m, const AcgParams& params);
 
-/// Partial views bend no wall: links of walls without mature evidence get no weight.
+/// Partial views bend no wall: links to walls without mature evidence get no weight.
 void drop_immature(const std::vector<double>& linked_m, const PlanModel& plan, const AcgParams& params,
                    std::vector<PieceLink>& links);
+void drop_immature(const std::vector<double>& linked_m, const PlanModel& plan, const AcgParams& params,
+                   std::vector<CornerLink>& links);
 
 }  // namespace smokemap

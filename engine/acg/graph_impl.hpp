@@ -10,6 +10,7 @@
 #include "acg/node_store.hpp"
 #include "acg/read_out.hpp"
 #include "acg/solver.hpp"
+#include "acg/wall_evidence.hpp"
 
 namespace smokemap {
 
@@ -32,19 +33,24 @@ class AutoCompleteGraph::Impl {
     std::vector<WallState> walls;
     std::vector<double> linked_m, near_m;  ///< per wall: length with pieces on it, within its gate
     std::vector<double> sigma_m;
+    BeamMemory beams;
     int updates = 0;
   };
 
   Result<MergedMap> update(const PoseGraph& graph, const Progress& progress);
+  Result<Ok> correct(Learnt& learnt, bool warm, const Progress& progress, SolveInput& last) const;
   bool align(Learnt& learnt) const;
   void choose(const std::vector<PlanAlignment>& found, Learnt& learnt) const;
   double first_metres_explained(Learnt trial) const;
   void put_down(const PlanPlacement& placement, Learnt& learnt) const;
   Result<Ok> take_up(Learnt& learnt, const Progress& progress) const;
   Result<Ok> release_tense(Learnt& learnt, const SolveInput& input, const Progress& progress) const;
-  Result<Ok> round(Learnt& learnt, const std::vector<bool>& use, double sharpness, bool poses_fixed,
+  Result<Ok> round(Learnt& learnt, const std::vector<bool>& use, double sharpness, const PoseRange& free_poses,
                    const Progress& progress, SolveInput* kept) const;
-  SolveInput make_input(const Learnt& learnt, bool poses_fixed) const;
+  void follow(const GraphState& before, const PoseRange& free_poses, GraphState& state) const;
+  SolveInput link(Learnt& learnt, const std::vector<bool>& use, const std::vector<double>& gates, double sharpness,
+                  const PoseRange& free_poses) const;
+  SolveInput make_input(const Learnt& learnt, const PoseRange& free_poses) const;
   std::vector<AnchorLink> anchor_links() const;
   void judge_walls(const std::vector<WallEvidence>& evidence, Learnt& learnt) const;
   MergedMap read_out(const PoseGraph& graph, const SolveInput& input, Learnt& learnt) const;
@@ -57,7 +63,10 @@ class AutoCompleteGraph::Impl {
   std::optional<PlanStart> start;
   std::map<std::string, GraphAnchor> anchors;
   std::map<int, WallJudgement> judgements;
+  std::map<int, Point2> pins;       ///< per corner, map
+  std::map<int, double> lengths_m;  ///< per wall
   Learnt learnt;
+  bool words_changed = false;  ///< people said something since the last update
   int revision = 0;
 };
 

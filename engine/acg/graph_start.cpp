@@ -78,7 +78,7 @@ double AutoCompleteGraph::Impl::first_metres_explained(Learnt trial) const {
     std::vector<bool> part = use;
     for (std::size_t i = 0; i < part.size(); ++i) part[i] = part[i] && nodes.way_m()[i] <= way * kCloserLook_m;
     for (const double sharpness : {1.0, 0.4})
-      if (!round(trial, part, sharpness, true, {}, &input)) return 0;
+      if (!round(trial, part, sharpness, {}, {}, &input)) return 0;
   }
   double linked = 0, all = 0;
   for (std::size_t i = 0; i < use.size(); ++i)

@@ -46,11 +46,31 @@ struct EndLink {
   double weight = 1;
 };
 
+/// Two faces meet where the plan has a corner.
+struct CornerLink {
+  std::size_t node = 0;
+  int corner = 0;
+  std::array<int, 2> walls{};          ///< whose faces meet
+  Point2 seen_robot = Point2::Zero();  ///< crossing of the faces
+  Point2 offset_map = Point2::Zero();  ///< from there to the crossing of the centre lines
+  double misfit_m = 0;
+  double borne_out = 1;  ///< less when no other link of its node agrees
+  double weight = 1;
+};
+
 /// What a person vouches for, in the frames of the solver.
 struct AnchorLink {
   std::array<int, 3> corners{};
   Eigen::Vector3d shares = Eigen::Vector3d::Zero();
   Point2 p_map = Point2::Zero();
+};
+struct CornerPin {
+  int corner = 0;
+  Point2 p_map = Point2::Zero();
+};
+struct WallLength {
+  int wall = 0;
+  double length_m = 0;
 };
 
 }  // namespace smokemap

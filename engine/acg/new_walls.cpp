@@ -47,8 +47,12 @@ bool explained(const Point2& p, const std::vector<KnownWall>& known) {
                      [&](const KnownWall& k) { return distance(k.segment, p) < k.half + kExplained_m; });
 }
 
-void add_fragments(const Segment2& piece, std::size_t node, const std::vector<KnownWall>& known,
+void add_fragments(const Segment2& piece, std::size_t node, const std::vector<KnownWall>& all,
                    std::vector<Fragment>& out) {
+  std::vector<KnownWall> known;
+  const Point2 middle = piece.midpoint();
+  for (const KnownWall& k : all)
+    if (distance(k.segment, middle) < 0.5 * piece.length() + k.half + kExplained_m) known.push_back(k);
   const int steps = std::max(1, static_cast<int>(piece.length() / kStep_m));
   const auto at = [&](int i) -> Point2 { return piece.a + (static_cast<double>(i) / steps) * (piece.b - piece.a); };
   int from = 0;

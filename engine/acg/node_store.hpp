@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "acg/acg_params.hpp"
@@ -9,29 +11,38 @@
 
 namespace smokemap {
 
+enum class GraphChange {
+  kGrown,    ///< the old nodes are where SLAM had them
+  kMoved,    ///< SLAM moved them (a loop was closed)
+  kAnother,  ///< nothing known about the old nodes holds
+};
+
 /// The nodes of SLAM's graph as the solver keeps them: prepared scans, edges by position, poses carried over.
 class NodeStore {
  public:
   explicit NodeStore(const AcgParams& params) : params_(params) {}
 
-  /// Takes over nodes and edges; new nodes get the correction of the node before them. When SLAM moved its own poses (a
-  /// loop was closed), the poses in `state` are started again from SLAM's if they fit its edges better.
-  void take(const PoseGraph& graph, GraphState& state);
+  /// Takes over nodes and edges; new nodes get the correction of their robot's node before them. When SLAM moved its
+  /// own poses (a loop was closed), the poses in `state` are started again from SLAM's if they fit its edges better.
+  GraphChange take(const PoseGraph& graph, GraphState& state);
 
   const std::vector<NodeView>& views() const { return views_; }
   const std::vector<PoseEdge>& edges() const { return edges_; }
   /// Nodes that say enough new to be asked about walls.
   const std::vector<bool>& spaced() const { return spaced_; }
-  /// Metres driven up to each node.
+  /// Metres driven up to each node, by all robots together.
   const std::vector<double>& way_m() const { return way_m_; }
   std::size_t size() const { return views_.size(); }
 
  private:
+  void take_edges(const PoseGraph& graph);
   void mark_spaced(const GraphState& state);
   double edge_cost(const GraphState& state) const;
 
   AcgParams params_;
   std::vector<NodeView> views_;
+  std::vector<Pose2> slam_poses_;  ///< as SLAM had them at the last taking over
+  std::map<std::string, int> robots_;
   std::vector<PoseEdge> edges_;
   std::vector<bool> spaced_;
   std::vector<double> way_m_;

@@ -20,6 +20,8 @@ Similarity2 rigid_plan(const SolvedPlan& solved) {
 constexpr double kNothingNear =
     0.3;  ///< of a wall's length: pieces within its gate there say that it is misplaced, not missing
 
+constexpr double kKept = 0.5, kDoubtful = 0.1;  ///< robust weights
+
 double confidence_of(WallState state, const WallEvidence& evidence) {
   const double length = std::max(0.1, evidence.length_m());
   switch (state) {
@@ -65,18 +67,11 @@ std::vector<bool> seen_corners(const SolvedPlan& solved) {
 }
 
 void read_links(const SolvedPlan& solved, MergedMap& out) {
-  for (const PieceLink& link : solved.links) {
-    const Pose2 pose = solved.state->pose(link.node);
-    const PlanEdge& wall = solved.plan->walls[static_cast<std::size_t>(link.wall)];
-    for (const int c : {wall.corner_a, wall.corner_b})
-      for (const Point2& end : {link.part_robot.a, link.part_robot.b}) {
-        const Point2 p = pose * end;
-        if ((p - solved.state->corner(c)).norm() > 0.4) continue;
-        const auto state = link.weight > 0.5   ? LinkState::kKept
-                           : link.weight > 0.1 ? LinkState::kDoubtful
-                                               : LinkState::kRejected;
-        out.links.push_back({p, c, state});
-      }
+  for (const CornerLink& link : solved.links) {
+    const auto state = link.weight > kKept       ? LinkState::kKept
+                       : link.weight > kDoubtful ? LinkState::kDoubtful
+                                                 : LinkState::kRejected;
+    out.links.push_back({solved.state->pose(link.node) * link.seen_robot, link.corner, state});
   }
 }
 

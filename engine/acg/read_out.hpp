@@ -20,7 +20,7 @@ struct SolvedPlan {
   std::vector<double> linked_m;        ///< per wall
   std::vector<WallState> wall_states;  ///< per wall
   std::vector<double> corner_sigma_m;  ///< per corner
-  std::vector<PieceLink> links;
+  std::vector<CornerLink> links;
 };
 
 /// State of a wall from what beams say, without people's word.

@@ -12,6 +12,7 @@ namespace {
 constexpr double kBend_m = 0.06;     ///< a hit this far from the chord begins a new piece
 constexpr double kFitRms_m = 0.035;  ///< rougher runs are no walls
 constexpr int kMinHits = 5;
+constexpr double kHitSigma_m = 0.03;
 
 bool neighbours(const Point2& a, const Point2& b) {
   const double range = std::min(a.norm(), b.norm());
@@ -57,6 +58,16 @@ void split(std::span<const Point2> run, double min_length_m, std::vector<ScanPie
   split(run.subspan(worst), min_length_m, pieces);
 }
 
+std::vector<WallLine> as_walls(const std::vector<ScanPiece>& pieces) {
+  std::vector<WallLine> walls;
+  for (const ScanPiece& p : pieces) {
+    const double independent = std::clamp(p.segment.length() / 0.25, 2.0, static_cast<double>(p.hits));
+    walls.push_back({p.segment, p.hits, kHitSigma_m / std::sqrt(independent),
+                     kHitSigma_m * std::sqrt(12 / independent) / p.segment.length(), 0});
+  }
+  return walls;
+}
+
 }  // namespace
 
 NodeView view_of(const PoseNode& node, const AcgParams& params) {
@@ -91,6 +102,7 @@ NodeView view_of(const PoseNode& node, const AcgParams& params) {
       if (p.allFinite() && p.norm() > 0.05) add_ray(p, false);
   std::stable_sort(view.rays.begin(), view.rays.end(),
                    [](const ScanRay& a, const ScanRay& b) { return a.bearing_rad < b.bearing_rad; });
+  view.corners = find_corners(as_walls(view.pieces));
   return view;
 }
 

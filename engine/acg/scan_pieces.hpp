@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "acg/acg_params.hpp"
+#include "features/corners.hpp"
 #include "geometry/segment2.hpp"
 #include "maps/pose_graph.hpp"
 
@@ -25,8 +26,10 @@ struct ScanRay {
 /// What one node has to say, prepared once.
 struct NodeView {
   int id = 0;
+  int robot = 0;  ///< which of the robots, counted in the order in which they came
   std::vector<ScanPiece> pieces;
-  std::vector<ScanRay> rays;  ///< ascending bearing
+  std::vector<ScanRay> rays;    ///< ascending bearing
+  std::vector<Corner> corners;  ///< where faces meet, robot frame
 };
 
 /// Splits the hits, ordered by bearing, where neighbours are far apart and where they bend (recursive split, total

@@ -8,20 +8,27 @@
 #include <cmath>
 
 #include "acg/residuals/anchor_cost.hpp"
+#include "acg/residuals/corner_cost.hpp"
 #include "acg/residuals/drawn_line_cost.hpp"
 #include "acg/residuals/neighbour_stretch_cost.hpp"
 #include "acg/residuals/piece_to_wall_cost.hpp"
+#include "acg/residuals/pin_cost.hpp"
 #include "acg/residuals/prior_value_cost.hpp"
 #include "acg/residuals/relative_pose_cost.hpp"
 #include "acg/residuals/strip_stretch_cost.hpp"
 #include "acg/residuals/wall_end_cost.hpp"
+#include "acg/residuals/wall_length_cost.hpp"
 #include "acg/residuals/wall_shape_cost.hpp"
 
 namespace smokemap {
 namespace {
 
 constexpr double kSigmaAnchor_m = 0.05;
-constexpr double kUnmodelled_m = 0.025;  ///< drawn wall thickness against the true one, bias of the sensor
+constexpr double kEdgeWidth = 3.0;  ///< sigmas from which SLAM is thought to have slipped
+constexpr double kLinesKnow = 2.5;  ///< times less sure than a wall that no line knows
+constexpr double kSigmaPin_m = 0.003;
+constexpr double kSigmaMeasured_m = 0.003;
+constexpr double kUnmodelled_m = 0.007;  ///< drawn wall thickness against the true one, bias of the sensor
 
 /// A weight that does not depend on the residual: the robust scheme sets it between solves.
 ceres::LossFunction* weighted(double weight) { return new ceres::ScaledLoss(nullptr, weight, ceres::TAKE_OWNERSHIP); }
@@ -73,6 +80,7 @@ class ProblemBuilder {
     add_lines(problem, 0);
     add_lines(problem, 1);
     add_evidence(problem);
+    add_words(problem);
   }
 
  private:
@@ -82,13 +90,14 @@ class ProblemBuilder {
   void add_poses(ceres::Problem& problem) {
     for (std::size_t i = 0; i < state_.poses.size(); ++i) {
       problem.AddParameterBlock(pose(i), 3);
-      if (i == 0 || in_.poses_fixed) problem.SetParameterBlockConstant(pose(i));
+      if (!in_.free_poses.contains(i)) problem.SetParameterBlockConstant(pose(i));
     }
-    if (in_.poses_fixed) return;
-    for (const PoseEdge& e : in_.edges)
+    for (const PoseEdge& e : in_.edges) {
+      const auto from = static_cast<std::size_t>(e.from), to = static_cast<std::size_t>(e.to);
+      if (!in_.free_poses.contains(from) && !in_.free_poses.contains(to)) continue;
       problem.AddResidualBlock(RelativePoseCost::Create(e.T_from_to, e.sqrt_information),
-                               e.kind == EdgeKind::kLoop ? new ceres::CauchyLoss(3.0) : nullptr,
-                               pose(static_cast<std::size_t>(e.from)), pose(static_cast<std::size_t>(e.to)));
+                               new ceres::CauchyLoss(kEdgeWidth), pose(from), pose(to));
+    }
   }
 
   void add_shape(ceres::Problem& problem, const PlanEdge& edge, double along_share, double firmness) {
@@ -104,8 +113,14 @@ class ProblemBuilder {
     problem.AddResidualBlock(PriorValueCost::Create(0, in_.plan->scale_sigma), nullptr, blocks_.log_scale());
     problem.AddParameterBlock(blocks_.turn(), 1);
     for (std::size_t w = 0; w < in_.plan->walls.size(); ++w)
-      add_shape(problem, in_.plan->walls[w], params_.sigma_wall_log_length, in_.wall_firmness[w]);
-    for (const PlanEdge& g : in_.plan->gaps) add_shape(problem, g, 1.5 * params_.sigma_wall_log_length, 1);
+      add_shape(problem, in_.plan->walls[w], stretch_of(in_.plan->walls[w]), in_.wall_firmness[w]);
+    for (const PlanEdge& g : in_.plan->gaps) add_shape(problem, g, 1.5 * stretch_of(g), 1);
+  }
+
+  /// The lines across a wall along one of the plan's axes know its stretch already; counted once for each wall between
+  /// the same two lines, it would look surer than it is.
+  double stretch_of(const PlanEdge& wall) const {
+    return (in_.plan->offset_axis(wall) >= 0 ? kLinesKnow : 1.0) * params_.sigma_wall_log_length;
   }
 
   void add_lines(ceres::Problem& problem, int axis) {
@@ -144,9 +159,24 @@ class ProblemBuilder {
       if (end.weight > 1e-3)
         problem.AddResidualBlock(WallEndCost::Create(end.end_robot, std::hypot(params_.sigma_end_m, end.sigma_m)),
                                  weighted(end.weight), pose(end.node), corner(end.corner), corner(end.other_corner));
+    for (const CornerLink& c : in_.corners)
+      if (c.weight > 1e-3)
+        problem.AddResidualBlock(CornerCost::Create(c.seen_robot, c.offset_map, params_.sigma_seen_corner_m),
+                                 weighted(c.weight), pose(c.node), corner(c.corner));
+  }
+
+  /// What people say is never weighted down.
+  void add_words(ceres::Problem& problem) {
     for (const AnchorLink& a : in_.anchors)
       problem.AddResidualBlock(AnchorCost::Create(a.shares, a.p_map, kSigmaAnchor_m), nullptr, corner(a.corners[0]),
                                corner(a.corners[1]), corner(a.corners[2]));
+    for (const CornerPin& p : in_.pins)
+      problem.AddResidualBlock(PinCost::Create(p.p_map, kSigmaPin_m), nullptr, corner(p.corner));
+    for (const WallLength& l : in_.lengths) {
+      const PlanEdge& wall = in_.plan->walls[static_cast<std::size_t>(l.wall)];
+      problem.AddResidualBlock(WallLengthCost::Create(l.length_m, kSigmaMeasured_m), nullptr, corner(wall.corner_a),
+                               corner(wall.corner_b));
+    }
   }
 
   const SolveInput& in_;

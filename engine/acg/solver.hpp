@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "acg/acg_params.hpp"
@@ -10,16 +12,26 @@
 
 namespace smokemap {
 
+/// Poses from..to-1 by position; the first pose of all is never free.
+struct PoseRange {
+  std::size_t from = 0, to = 0;
+  bool empty() const { return to <= std::max<std::size_t>(from, 1); }
+  bool contains(std::size_t i) const { return i > 0 && i >= from && i < to; }
+};
+
 /// One round's problem: what is known, and with what weight.
 struct SolveInput {
   const PlanModel* plan = nullptr;  ///< none: poses only
   std::vector<PoseEdge> edges;      ///< from, to: positions in GraphState::poses
   std::vector<PieceLink> links;
   std::vector<EndLink> ends;
+  std::vector<CornerLink> corners;
   std::vector<AnchorLink> anchors;
+  std::vector<CornerPin> pins;
+  std::vector<WallLength> lengths;
   std::vector<double>
-      wall_firmness;  ///< per wall 0..1: how much the plan's shape counts (low for a wall that is not there)
-  bool poses_fixed = false;
+      wall_firmness;     ///< per wall 0..1: how much the plan's shape counts (low for a wall that is not there)
+  PoseRange free_poses;  ///< the others stay where they are
   int iterations = 10;
 };
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "acg/graph_state.hpp"
 #include "acg/scan_pieces.hpp"
+#include "acg/wall_sight.hpp"
 
 namespace smokemap {
 
@@ -25,9 +27,20 @@ struct BeamReading {
   std::vector<EndLink> ends;
 };
 
-/// @param end_gate_m per wall: an end farther from where the plan has it is not its end
-/// Cost: for each node and wall in reach the beams in its sector.
-BeamReading read_beams(const std::vector<NodeView>& views, const std::vector<bool>& use_node, const PlanModel& plan,
-                       const GraphState& state, const std::vector<double>& end_gate_m);
+/// Asks the beams of all nodes about all walls, and remembers the answers: what is asked again is only what moved
+/// against the robot by two centimetres or more. Copies share what they remember. Forget it (make a new one) with the
+/// plan.
+class BeamMemory {
+ public:
+  /// @param end_gate_m per wall: an end farther from where the plan has it is not its end
+  /// Cost: nodes x walls in reach, and for what moved the beams in the wall's sector. Deterministic.
+  BeamReading read(const std::vector<NodeView>& views, const std::vector<bool>& use_node, const PlanModel& plan,
+                   const GraphState& state, const std::vector<double>& end_gate_m);
+
+ private:
+  std::shared_ptr<const WallSight> recall(std::size_t node, int wall, const Segment2& wall_robot) const;
+
+  std::vector<std::vector<std::shared_ptr<const WallSight>>> sights_;  ///< per node, ascending wall
+};
 
 }  // namespace smokemap

@@ -139,6 +139,74 @@ TEST(AutoCompleteGraph, TakesBackWhatItThoughtOfAWallWhenAPersonSaysOtherwise) {
   EXPECT_THAT(acg.judge_wall(100000, WallJudgement::kGone), Fails(Errc::kNotFound));
 }
 
+TEST(AutoCompleteGraph, HoldsAPinnedCornerAndAMeasuredWallWhateverSensorsSay) {
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
+  AutoCompleteGraph acg;
+  ASSERT_THAT(acg.set_plan(problem.plan, problem.start), IsOk());
+  const MergedMap before = *acg.update(problem.graph);
+  std::size_t seen = 0;
+  while (!before.corners[seen].seen) ++seen;
+  const Point2 pin = before.corners[seen].p_map + Point2(0.3, 0.2);
+  ASSERT_THAT(acg.pin_corner(static_cast<int>(seen), pin), IsOk());
+  std::size_t wall = 0;
+  const auto touches_pin = [&](std::size_t w) {
+    return problem.plan.walls[w].corner_a == static_cast<int>(seen) ||
+           problem.plan.walls[w].corner_b == static_cast<int>(seen);
+  };
+  while (touches_pin(wall) || before.walls[wall].segment_map.length() < 2) ++wall;
+  const double length = before.walls[wall].segment_map.length() - 0.25;
+  ASSERT_THAT(acg.set_wall_length(static_cast<int>(wall), length), IsOk());
+  for (int again = 0; again < 2; ++again) {
+    const MergedMap held = *acg.update(problem.graph);
+    EXPECT_LT((held.corners[seen].p_map - pin).norm(), 0.03);
+    EXPECT_NEAR(held.walls[wall].segment_map.length(), length, 0.05);
+  }
+  ASSERT_THAT(acg.pin_corner(static_cast<int>(seen), std::nullopt), IsOk());
+  ASSERT_THAT(acg.set_wall_length(static_cast<int>(wall), std::nullopt), IsOk());
+  const MergedMap free = *acg.update(problem.graph);
+  EXPECT_LT((free.corners[seen].p_map - before.corners[seen].p_map).norm(), 0.05);
+  EXPECT_NEAR(free.walls[wall].segment_map.length(), before.walls[wall].segment_map.length(), 0.05);
+}
+
+TEST(AutoCompleteGraph, RefusesWordsAboutWhatThePlanDoesNotHave) {
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
+  AutoCompleteGraph acg;
+  EXPECT_THAT(acg.pin_corner(0, Point2(0, 0)), Fails(Errc::kNotFound));
+  ASSERT_THAT(acg.set_plan(problem.plan, problem.start), IsOk());
+  EXPECT_THAT(acg.pin_corner(100000, Point2(0, 0)), Fails(Errc::kNotFound));
+  EXPECT_THAT(acg.pin_corner(0, Point2(std::nan(""), 0)), Fails(Errc::kInvalidArgument));
+  EXPECT_THAT(acg.set_wall_length(-1, 4.2), Fails(Errc::kNotFound));
+  EXPECT_THAT(acg.set_wall_length(0, -1), Fails(Errc::kInvalidArgument));
+}
+
+TEST(AutoCompleteGraph, ShowsItsLinksAndKeepsThemRight) {
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
+  const MergedMap merged = merge_all(problem);
+  int kept = 0, right = 0;
+  for (const MapLink& link : merged.links) {
+    if (link.state != LinkState::kKept) continue;
+    ++kept;
+    right += (link.p_map - problem.true_corners[static_cast<std::size_t>(link.layout_corner)]).norm() < 0.45;
+  }
+  EXPECT_GT(kept, 50);
+  EXPECT_GE(right, 0.98 * kept);
+}
+
+TEST(AutoCompleteGraph, TakesBackASlipOfSlamWhereItHappened) {
+  MergeProblemParams params;
+  params.stretch = 0.03;
+  MergeProblem problem = make_merge_problem(corridor_building(), params);
+  const std::size_t slip = problem.graph.nodes.size() / 2;
+  const Pose2 here = problem.graph.nodes[slip - 1].T_map_robot, wrong(0.25, 0.15, 0.07);
+  for (std::size_t i = slip; i < problem.graph.nodes.size(); ++i) {
+    Pose2& pose = problem.graph.nodes[i].T_map_robot;
+    pose = here * wrong * here.inverse() * pose;
+  }
+  for (PoseEdge& e : problem.graph.edges)
+    if (e.to == static_cast<int>(slip)) e.T_from_to = wrong * e.T_from_to;
+  EXPECT_LT(pose_rmse(problem, merge_all(problem)), 0.15);
+}
+
 TEST(AutoCompleteGraph, GrowsWithTheGraphAndNeverTurnsAWallWildly) {
   MergeProblemParams params;
   params.seed = 2;
