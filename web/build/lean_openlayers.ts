@@ -5,7 +5,7 @@
  */
 import type { Plugin } from 'vite';
 
-const kReplaced: Readonly<Record<string, string>> = {
+export const kReplaced: Readonly<Record<string, string>> = {
   // Only called when a map is made without saying which: Stage says none.
   'ol/control/defaults.js': 'export const defaults = () => [];',
   'ol/interaction/defaults.js': 'export const defaults = () => [];',
