@@ -12,7 +12,7 @@ export interface WallStyle {
 
 export const kWallStyles: Readonly<Record<WallState, WallStyle>> = {
   confirmed: { widthPx: 3.5, dashPx: [] },
-  moved: { widthPx: 3.5, dashPx: [] },
+  moved: { widthPx: 5, dashPx: [] },
   unseen: { widthPx: 2, dashPx: [7, 6] },
   missing: { widthPx: 2.5, dashPx: [2, 5] },
   new: { widthPx: 4, dashPx: [] },
@@ -21,22 +21,26 @@ export const kWallStyles: Readonly<Record<WallState, WallStyle>> = {
 const kCrossEveryM = 1;
 const kCrossArmM = 0.16;
 
+/** The walls of one state as one path; small crosses along those that are not there. */
+interface Drawn {
+  readonly walls: readonly Wall[];
+  readonly path: Path2D;
+  readonly crosses: Path2D | undefined;
+}
+
 export class WallsPainter implements Painter {
   revision = 0;
-  #paths = new Map<WallState, Path2D>();
-  #crosses = new Path2D();
+  #drawn = new Map<WallState, Drawn>();
   #hidden: ReadonlySet<WallState> = new Set();
   #opacity = 1;
 
+  /** A change of a few walls prepares only the states that they were in and are in now. */
   setWalls(walls: Table<Wall>): void {
-    this.#paths = new Map();
-    this.#crosses = new Path2D();
-    for (const { a, b, state } of walls.values()) {
-      const path = this.#paths.get(state) ?? new Path2D();
-      this.#paths.set(state, path);
-      path.moveTo(a[0], a[1]);
-      path.lineTo(b[0], b[1]);
-      if (state === 'missing') addCrosses(this.#crosses, a, b);
+    const byState = new Map<WallState, Wall[]>(wallStates.map((state) => [state, []]));
+    for (const wall of walls.values()) byState.get(wall.state)!.push(wall);
+    for (const [state, list] of byState) {
+      const known = this.#drawn.get(state);
+      if (!known || !isSame(known.walls, list)) this.#drawn.set(state, draw(list, state));
     }
     this.revision++;
   }
@@ -53,23 +57,36 @@ export class WallsPainter implements Painter {
     context.lineCap = 'round';
     // What is least certain lies lowest.
     for (const state of [...wallStates].reverse()) {
-      const path = this.#paths.get(state);
-      if (path && !this.#hidden.has(state)) strokeWall(context, path, state, frame.palette, frame.resolution);
+      const drawn = this.#drawn.get(state);
+      if (drawn && drawn.walls.length > 0 && !this.#hidden.has(state)) strokeWalls(context, drawn, state, frame.palette, frame.resolution);
     }
-    if (this.#hidden.has('missing')) return;
-    context.setLineDash([]);
-    context.lineWidth = 2 * frame.resolution;
-    context.strokeStyle = frame.palette.walls.missing;
-    context.stroke(this.#crosses);
   }
 }
 
-function strokeWall(context: CanvasRenderingContext2D, path: Path2D, state: WallState, palette: Palette, unit: number): void {
+const isSame = (before: readonly Wall[], now: readonly Wall[]): boolean =>
+  before.length === now.length && before.every((wall, i) => wall === now[i]);
+
+function draw(walls: readonly Wall[], state: WallState): Drawn {
+  const path = new Path2D();
+  const crosses = state === 'missing' ? new Path2D() : undefined;
+  for (const { a, b } of walls) {
+    path.moveTo(a[0], a[1]);
+    path.lineTo(b[0], b[1]);
+    if (crosses) addCrosses(crosses, a, b);
+  }
+  return { walls, path, crosses };
+}
+
+function strokeWalls(context: CanvasRenderingContext2D, { path, crosses }: Drawn, state: WallState, palette: Palette, unit: number): void {
   const { widthPx, dashPx } = kWallStyles[state];
   context.lineWidth = widthPx * unit;
   context.setLineDash(dashPx.map((px) => px * unit));
   context.strokeStyle = palette.walls[state];
   context.stroke(path);
+  if (!crosses) return;
+  context.setLineDash([]);
+  context.lineWidth = 2 * unit;
+  context.stroke(crosses);
 }
 
 /** "This wall is not there": small crosses along it. */
