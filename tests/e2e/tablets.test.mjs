@@ -84,6 +84,21 @@ describe('tablets and the demo', { timeout: 900_000 }, () => {
     await anna.page.waitForSelector('text=At the window', { state: 'detached' });
   });
 
+  test('a place of the plan is fixed on the map, shown with what is left, and let go again', async () => {
+    const anna = await tablet();
+    const probe = await Probe.open(smokemap.url);
+    await anna.showEverything();
+    const inside = await probe.until(({ info }) => info?.plan_mesh && mean(info.plan_mesh.map));
+    await anna.tap(inside);
+    await anna.page.click('[role=dialog] >> text=Fix the plan here');
+    await anna.tap([inside[0] + 0.5, inside[1]]);
+    await probe.until(({ anchors }) => Object.keys(anchors ?? {}).length === 1);
+    await anna.page.click('button:has-text("Fixed point, off by")');
+    await anna.page.click('[role=dialog] >> text=Let go');
+    await probe.until(({ anchors }) => Object.keys(anchors ?? {}).length === 0);
+    probe.close();
+  });
+
   test('the stop is confirmed at once; a server that does not answer is shown as not confirmed', async () => {
     const anna = await tablet();
     await anna.page.click('button.stop');
