@@ -63,9 +63,23 @@ export class Tablet {
   async #onScreen([x, y], canvas) {
     const target = this.page.locator('[data-view]').nth(canvas);
     const box = await target.boundingBox();
-    const [cx, cy, resolution, rotation] = (await target.getAttribute('data-view')).split(' ').map(Number);
+    const [cx, cy, resolution, rotation] = (await this.#viewAtRest(target)).split(' ').map(Number);
     if (Math.abs(rotation) > 1e-9) throw new Error('the view is turned');
     return [box.x + box.width / 2 + (x - cx) / resolution, box.y + box.height / 2 - (y - cy) / resolution];
+  }
+
+  /** A canvas that was just opened is still being fitted to what it shows. */
+  async #viewAtRest(target) {
+    for (let before = ''; ; ) {
+      const now = await target.getAttribute('data-view');
+      if (now === before) return now;
+      before = now;
+      await this.#painted();
+    }
+  }
+
+  #painted() {
+    return this.page.evaluate(() => new Promise((painted) => requestAnimationFrame(() => requestAnimationFrame(painted))));
   }
 
   /** Draws a stroke through canvas points, as fractions of its width and height. */
@@ -117,7 +131,7 @@ export class Tablet {
   /** Shows the whole map, and waits until it is painted. */
   async showEverything() {
     await this.page.click('[aria-label="Show everything"]');
-    await this.page.evaluate(() => new Promise((painted) => requestAnimationFrame(() => requestAnimationFrame(painted))));
+    await this.#painted();
   }
 
   /** Every act is with the server: nothing waits. */

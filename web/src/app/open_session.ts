@@ -6,7 +6,6 @@ import { type Restored, restoreState } from '../model/saved';
 import type { Shared } from '../ui/context';
 import { Keeper } from '../ui/state/keeper';
 import { Pictures } from '../ui/state/pictures';
-import { Prepare } from '../ui/state/prepare.svelte';
 import { type Identity, Session } from '../ui/state/session.svelte';
 import { parsePairing } from '../wire/http';
 
@@ -51,10 +50,9 @@ export async function openSession(me: Identity, onUnauthorised: () => void): Pro
   void navigator.storage?.persist?.();
   session.start();
   const pictures = new Pictures(api);
-  const prepare = new Prepare(session, pictures, {
+  const shelf = {
     load: async () => (await storage?.loadState('preparation')) ?? null,
-    save: async (value) => storage?.saveState('preparation', value),
-  });
-  void prepare.restore();
-  return { session, pictures, prepare };
+    save: async (value: unknown) => storage?.saveState('preparation', value),
+  };
+  return { session, pictures, shelf };
 }

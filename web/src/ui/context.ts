@@ -1,6 +1,6 @@
 import { getContext, setContext } from 'svelte';
 import type { Pictures } from './state/pictures';
-import type { Prepare } from './state/prepare.svelte';
+import type { Prepare, Shelf } from './state/prepare.svelte';
 import type { Session } from './state/session.svelte';
 
 const kSession = Symbol('session');
@@ -8,8 +8,10 @@ const kSession = Symbol('session');
 export interface Shared {
   readonly session: Session;
   readonly pictures: Pictures;
-  /** Survives a change of mode: a half-prepared plan is not lost by a look at the map. */
-  readonly prepare: Prepare;
+  /** Where a half-prepared plan is kept. */
+  readonly shelf: Shelf;
+  /** Made when somebody first prepares; survives a change of mode, so a look at the map loses nothing. */
+  prepare?: Prepare;
 }
 
 export const provide = (shared: Shared): Shared => setContext(kSession, shared);

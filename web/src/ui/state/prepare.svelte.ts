@@ -81,6 +81,13 @@ export class Prepare {
     this.#shelf = shelf;
   }
 
+  /** With what this device prepared before the page was loaded. */
+  static begin(session: Session, pictures: Pictures, shelf: Shelf): Prepare {
+    const prepare = new Prepare(session, pictures, shelf);
+    void prepare.restore();
+    return prepare;
+  }
+
   /** Goes on where this device stopped before the page was loaded. */
   async restore(): Promise<void> {
     const kept = restorePreparation(await this.#shelf.load().catch(() => null));
