@@ -40,6 +40,16 @@ struct JudgeWall {
   int layout_wall = 0;
   WallVerdict verdict = WallVerdict::kNone;
 };
+/// "This wall is 4.2 m long", measured by a person; nothing takes it back.
+struct MeasureWall {
+  int layout_wall = 0;
+  std::optional<double> length_m;
+};
+/// "This corner of the plan is here"; nothing takes the pin out.
+struct PinCorner {
+  int layout_corner = 0;
+  std::optional<Point2> p_map;
+};
 struct AddStroke {
   Stroke stroke;
 };
@@ -83,8 +93,8 @@ struct SetExploring {
   bool exploring = true;
 };
 
-using Command =
-    std::variant<SetLayout, SetStart, AddAnchor, RemoveAnchor, JudgeWall, AddStroke, EraseStroke, ClearSketch,
-                 SetSketchSheet, JudgePair, PlacePoi, RemovePoi, SetGoal, CancelGoal, EmergencyStop, SetExploring>;
+using Command = std::variant<SetLayout, SetStart, AddAnchor, RemoveAnchor, JudgeWall, MeasureWall, PinCorner, AddStroke,
+                             EraseStroke, ClearSketch, SetSketchSheet, JudgePair, PlacePoi, RemovePoi, SetGoal,
+                             CancelGoal, EmergencyStop, SetExploring>;
 
 }  // namespace smokemap

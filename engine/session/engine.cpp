@@ -205,9 +205,9 @@ class Engine::Impl {
   SnapshotListener listener_;
   std::uint64_t revision_ = 0;
 
-  Mapper mapper_;        // sensing thread only
-  Merger merger_;        // merging thread only
-  SketchReader reader_;  // reading thread only
+  Mapper mapper_{GraphWork::kInBackground};  // sensing thread only
+  Merger merger_;                            // merging thread only
+  SketchReader reader_;                      // reading thread only
 
   std::jthread sensing_, merging_, reading_, steering_;  // last: they end before what they use
 };

@@ -23,8 +23,8 @@ struct EngineParams {
 /// The facade of everything that understands maps: commands and sensor data in, immutable snapshots out.
 ///
 /// Thread-safe: any thread may call any member. Four threads work behind it: sensing (SLAM), steering (ticks), merging
-/// (the Auto-Complete Graph) and reading the sketch. Sensor queues are bounded and drop the oldest, commands never
-/// drop.
+/// (the Auto-Complete Graph) and reading the sketch, and one a robot that closes loops. Sensor queues are bounded and
+/// drop the oldest, commands never drop.
 class Engine {
  public:
   using SnapshotListener = std::function<void(std::shared_ptr<const Snapshot>)>;

@@ -46,7 +46,7 @@ std::vector<LocalizerWall> walls_to_localize_in(const MergedMap& merged) {
 
 Mapper::Track& Mapper::track_of(const std::string& robot) {
   if (map_maker_.empty()) map_maker_ = robot;
-  return tracks_.try_emplace(robot).first->second;
+  return tracks_.try_emplace(robot, work_).first->second;
 }
 
 std::optional<PoseReport> Mapper::report(const std::string& robot, Track& track, const Result<ScanOutcome>& outcome) {

@@ -41,6 +41,9 @@ struct FloorView {
 /// Runs on one thread; no other state.
 class Mapper {
  public:
+  /// @param work who closes loops and solves: inside optimize (deterministic), or a thread a robot
+  explicit Mapper(GraphWork work = GraphWork::kWhenAsked) : work_(work) {}
+
   /// @return what the fleet should know, if the item said something new
   std::optional<PoseReport> add(const SensorItem& item);
   /// What merging made of the floor. Cheap when it is the same object as before.
@@ -52,6 +55,8 @@ class Mapper {
 
  private:
   struct Track {
+    explicit Track(GraphWork work) : slam(SlamParams{}, work) {}
+
     Slam slam;
     ObstacleWatch watch;
     Pose2 T_odom_robot;
@@ -69,6 +74,7 @@ class Mapper {
   void locate(const std::string& robot, Track& track);
   void join(const std::string& robot, Track& track, const PoseNode& node);
 
+  const GraphWork work_;
   std::map<std::string, Track> tracks_;
   std::string map_maker_;
   GraphUnion union_;

@@ -48,11 +48,15 @@ void Merger::take_plan(const MergeInput& input) {
   if (new_plan) {
     has_plan_ = input.layout && acg_.set_plan(input.layout->layout, input.start).ok();
     if (!has_plan_) acg_.clear_plan();
-    known_.anchors.clear(), known_.wall_verdicts.clear();
+    known_.anchors.clear(), known_.wall_verdicts.clear(), known_.wall_lengths_m.clear(), known_.corner_pins.clear();
   } else if (has_plan_ && input.start && !same_start(input.start, known_.start)) {
     acg_.set_start(*input.start);
   }
-  if (!has_plan_) return;
+  if (has_plan_) take_word_of_people(input);
+}
+
+/// Tells the graph what changed since the last call.
+void Merger::take_word_of_people(const MergeInput& input) {
   for (const auto& [id, anchor] : known_.anchors)
     if (!input.anchors.contains(id)) acg_.remove_anchor(id);
   for (const auto& [id, anchor] : input.anchors)
@@ -62,6 +66,12 @@ void Merger::take_plan(const MergeInput& input) {
     if (!input.wall_verdicts.contains(wall)) (void)acg_.judge_wall(wall, WallJudgement::kNone);
   for (const auto& [wall, verdict] : input.wall_verdicts)
     (void)acg_.judge_wall(wall, verdict == WallVerdict::kGone ? WallJudgement::kGone : WallJudgement::kThere);
+  for (const auto& [wall, length_m] : known_.wall_lengths_m)
+    if (!input.wall_lengths_m.contains(wall)) (void)acg_.set_wall_length(wall, std::nullopt);
+  for (const auto& [wall, length_m] : input.wall_lengths_m) (void)acg_.set_wall_length(wall, length_m);
+  for (const auto& [corner, p_map] : known_.corner_pins)
+    if (!input.corner_pins.contains(corner)) (void)acg_.pin_corner(corner, std::nullopt);
+  for (const auto& [corner, p_map] : input.corner_pins) (void)acg_.pin_corner(corner, p_map);
 }
 
 std::shared_ptr<const MergedMap> Merger::merge(const MergeInput& input, const Progress& progress,

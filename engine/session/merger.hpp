@@ -22,6 +22,8 @@ struct MergeInput {
   std::optional<PlanStart> start;
   std::map<std::string, AddAnchor> anchors;
   std::map<int, WallVerdict> wall_verdicts;
+  std::map<int, double> wall_lengths_m;
+  std::map<int, Point2> corner_pins;
 };
 
 struct MergeResult {
@@ -42,6 +44,7 @@ class Merger {
  private:
   void start_over();
   void take_plan(const MergeInput& input);
+  void take_word_of_people(const MergeInput& input);
   std::shared_ptr<const MergedMap> merge(const MergeInput& input, const Progress& progress, std::string& complaint);
 
   AutoCompleteGraph acg_;

@@ -71,7 +71,8 @@ void SessionCore::forget_starts() {
 MergeInput SessionCore::merge_input(FloorGraph floor) const {
   const auto& nodes = floor.graph->nodes;
   const auto start = starts_.find(nodes.empty() ? newest_start_ : nodes.front().robot);
-  MergeInput input{std::move(floor), board_.layout, std::nullopt, board_.anchors, board_.wall_verdicts};
+  MergeInput input{std::move(floor),     board_.layout,         std::nullopt,      board_.anchors,
+                   board_.wall_verdicts, board_.wall_lengths_m, board_.corner_pins};
   if (start != starts_.end()) input.start = start->second;
   return input;
 }

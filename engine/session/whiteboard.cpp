@@ -6,6 +6,7 @@ namespace smokemap {
 namespace {
 
 constexpr std::size_t kMostStrokes = 5000;
+constexpr double kShortestWallM = 0.1, kLongestWallM = 500;
 constexpr std::size_t kMostPois = 5000;
 constexpr std::size_t kMostGoals = 1000;
 
@@ -67,7 +68,7 @@ Result<Ok> Whiteboard::do_apply(const SetLayout& command) {
                           layout->layout.width_px == command.layout.width_px &&
                           layout->layout.height_px == command.layout.height_px;
   layout = std::make_shared<const LayoutView>(LayoutView{command.plan_id, command.layout});
-  wall_verdicts.clear();  // walls are counted anew
+  wall_verdicts.clear(), wall_lengths_m.clear(), corner_pins.clear();  // walls and corners are counted anew
   if (!same_sheet) {
     ++revisions.layout_frame;
     start.reset();
@@ -109,6 +110,32 @@ Result<Ok> Whiteboard::do_apply(const JudgeWall& command) {
     wall_verdicts.erase(command.layout_wall);
   else
     wall_verdicts[command.layout_wall] = command.verdict;
+  ++revisions.plan;
+  return Ok{};
+}
+
+Result<Ok> Whiteboard::do_apply(const MeasureWall& command) {
+  if (!layout || command.layout_wall < 0 || command.layout_wall >= static_cast<int>(layout->layout.walls.size()))
+    return fail(Errc::kNotFound, "the plan has no wall " + std::to_string(command.layout_wall));
+  if (command.length_m && !(*command.length_m >= kShortestWallM && *command.length_m <= kLongestWallM))
+    return fail(Errc::kInvalidArgument, "a wall is 0.1 to 500 m long");
+  if (command.length_m)
+    wall_lengths_m[command.layout_wall] = *command.length_m;
+  else
+    wall_lengths_m.erase(command.layout_wall);
+  ++revisions.plan;
+  return Ok{};
+}
+
+Result<Ok> Whiteboard::do_apply(const PinCorner& command) {
+  if (!layout || command.layout_corner < 0 || command.layout_corner >= static_cast<int>(layout->layout.corners.size()))
+    return fail(Errc::kNotFound, "the plan has no corner " + std::to_string(command.layout_corner));
+  if (command.p_map)
+    if (const auto ok = finite(*command.p_map, "the corner on the map"); !ok) return ok;
+  if (command.p_map)
+    corner_pins[command.layout_corner] = *command.p_map;
+  else
+    corner_pins.erase(command.layout_corner);
   ++revisions.plan;
   return Ok{};
 }

@@ -38,6 +38,8 @@ class Whiteboard {
   std::optional<SetStart> start;
   std::map<std::string, AddAnchor> anchors;
   std::map<int, WallVerdict> wall_verdicts;
+  std::map<int, double> wall_lengths_m;  ///< measured by people
+  std::map<int, Point2> corner_pins;     ///< layout corner -> place in `map`
   std::vector<PairVerdict> pair_verdicts;
   std::map<std::string, PointOfInterest> pois;
   std::vector<Goal> goals;        ///< in the order in which they are to be driven
@@ -61,6 +63,8 @@ class Whiteboard {
   Result<Ok> do_apply(const AddAnchor& command);
   Result<Ok> do_apply(const RemoveAnchor& command);
   Result<Ok> do_apply(const JudgeWall& command);
+  Result<Ok> do_apply(const MeasureWall& command);
+  Result<Ok> do_apply(const PinCorner& command);
   Result<Ok> do_apply(const AddStroke& command);
   Result<Ok> do_apply(const EraseStroke& command);
   Result<Ok> do_apply(const ClearSketch& command);

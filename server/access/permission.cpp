@@ -14,6 +14,8 @@ struct LeastRole {
   Role operator()(const AddAnchor&) const { return Role::kCommander; }
   Role operator()(const RemoveAnchor&) const { return Role::kCommander; }
   Role operator()(const JudgeWall&) const { return Role::kCommander; }
+  Role operator()(const MeasureWall&) const { return Role::kCommander; }
+  Role operator()(const PinCorner&) const { return Role::kCommander; }
   Role operator()(const AddStroke&) const { return Role::kFirefighter; }
   Role operator()(const EraseStroke&) const { return Role::kFirefighter; }
   Role operator()(const ClearSketch&) const { return Role::kFirefighter; }

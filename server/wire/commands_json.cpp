@@ -59,6 +59,18 @@ Result<Command> judge_wall(const Json& data, const Authorship&) {
   return finish(
       f, JudgeWall{f.integer("wall", 0, kMostWalls), static_cast<WallVerdict>(f.word("verdict", kWallVerdicts))});
 }
+Result<Command> measure_wall(const Json& data, const Authorship&) {
+  Fields f(data, "measure_wall");
+  MeasureWall command{f.integer("wall", 0, kMostWalls), std::nullopt};
+  if (f.has("length")) command.length_m = f.number("length", 0.1, 500);
+  return finish(f, command);
+}
+Result<Command> pin_corner(const Json& data, const Authorship&) {
+  Fields f(data, "pin_corner");
+  PinCorner command{f.integer("corner", 0, kMostWalls), std::nullopt};
+  if (f.has("map")) command.p_map = f.point("map");
+  return finish(f, command);
+}
 Result<Command> add_stroke(const Json& data, const Authorship& by) {
   Fields f(data, "add_stroke");
   Stroke stroke;
@@ -136,6 +148,8 @@ constexpr std::array<Kind, std::variant_size_v<Command>> kKinds{{{"set_layout", 
                                                                  {"add_anchor", add_anchor},
                                                                  {"remove_anchor", remove_anchor},
                                                                  {"judge_wall", judge_wall},
+                                                                 {"measure_wall", measure_wall},
+                                                                 {"pin_corner", pin_corner},
                                                                  {"add_stroke", add_stroke},
                                                                  {"erase_stroke", erase_stroke},
                                                                  {"clear_sketch", clear_sketch},
@@ -161,6 +175,12 @@ struct DataOf {
   Json operator()(const RemoveAnchor& c) const { return {{"id", c.id}}; }
   Json operator()(const JudgeWall& c) const {
     return {{"wall", c.layout_wall}, {"verdict", kWallVerdicts[static_cast<std::size_t>(c.verdict)]}};
+  }
+  Json operator()(const MeasureWall& c) const {
+    return {{"wall", c.layout_wall}, {"length", c.length_m ? Json(*c.length_m) : Json()}};
+  }
+  Json operator()(const PinCorner& c) const {
+    return {{"corner", c.layout_corner}, {"map", c.p_map ? plain_point(*c.p_map) : Json()}};
   }
   Json operator()(const AddStroke& c) const {
     Json points = Json::array();

@@ -155,5 +155,26 @@ TEST(Merger, AnotherPlanReplacesTheFirst) {
   EXPECT_TRUE(merger.run(input).merged->corners.empty()) << "and can be taken away";
 }
 
+TEST(Merger, AMeasuredWallHasItsLengthAndLosesItAgain) {
+  Merger merger;
+  MergeInput input = input_with(walk(kTrueStart));
+  const auto length_of_first = [](const MergeResult& r) { return r.merged->walls.at(0).segment_map.length(); };
+  const double seen_m = length_of_first(merger.run(input));
+  EXPECT_NEAR(seen_m, 10, 0.15);
+  input.wall_lengths_m[0] = 10.6;
+  EXPECT_NEAR(length_of_first(merger.run(input)), 10.6, 0.1) << "a person's word is harder than what was seen";
+  input.wall_lengths_m.clear();
+  EXPECT_NEAR(length_of_first(merger.run(input)), seen_m, 0.1);
+}
+
+TEST(Merger, APinnedCornerIsWhereItWasPinned) {
+  Merger merger;
+  MergeInput input = input_with(walk(kTrueStart));
+  const Point2 p_true = merger.run(input).merged->corners.at(1).p_map;
+  input.corner_pins[1] = p_true + Point2(0.3, -0.2);
+  EXPECT_THAT(merger.run(input).merged->corners.at(1).p_map,
+              test::IsNearPoint(Point2(p_true + Point2(0.3, -0.2)), 0.05));
+}
+
 }  // namespace
 }  // namespace smokemap

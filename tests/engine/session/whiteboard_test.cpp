@@ -69,5 +69,27 @@ TEST(Whiteboard, OneRobotsReleaseDoesNotReleaseAll) {
   EXPECT_FALSE(board.is_stopped("robot1"));
 }
 
+TEST(Whiteboard, MeasuredWallsAndPinnedCornersStayUntilTakenBackOrThePlanChanges) {
+  Whiteboard board;
+  EXPECT_THAT(board.apply(MeasureWall{0, 4.2}), test::Fails(Errc::kNotFound)) << "there is no plan";
+  ASSERT_THAT(board.apply(SetLayout{"one", square_plan()}), test::IsOk());
+  const int before = board.revisions.plan;
+  ASSERT_THAT(board.apply(MeasureWall{0, 4.2}), test::IsOk());
+  ASSERT_THAT(board.apply(PinCorner{3, Point2(1, 2)}), test::IsOk());
+  EXPECT_GT(board.revisions.plan, before);
+  EXPECT_EQ(board.wall_lengths_m.at(0), 4.2);
+  EXPECT_EQ(board.corner_pins.at(3), Point2(1, 2));
+  EXPECT_THAT(board.apply(MeasureWall{4, 4.2}), test::Fails(Errc::kNotFound));
+  EXPECT_THAT(board.apply(MeasureWall{0, 0.0}), test::Fails(Errc::kInvalidArgument));
+  EXPECT_THAT(board.apply(MeasureWall{0, std::nan("")}), test::Fails(Errc::kInvalidArgument));
+  EXPECT_THAT(board.apply(PinCorner{-1, Point2(1, 2)}), test::Fails(Errc::kNotFound));
+  EXPECT_THAT(board.apply(PinCorner{0, Point2(1, std::nan(""))}), test::Fails(Errc::kInvalidArgument));
+  EXPECT_EQ(board.wall_lengths_m.size() + board.corner_pins.size(), 2u) << "what was refused changed nothing";
+  ASSERT_THAT(board.apply(PinCorner{3, std::nullopt}), test::IsOk());
+  EXPECT_TRUE(board.corner_pins.empty());
+  ASSERT_THAT(board.apply(SetLayout{"one", square_plan()}), test::IsOk());
+  EXPECT_TRUE(board.wall_lengths_m.empty()) << "walls are counted anew";
+}
+
 }  // namespace
 }  // namespace smokemap

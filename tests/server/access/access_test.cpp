@@ -108,6 +108,8 @@ std::vector<Command> every_command() {
           AddAnchor{},
           RemoveAnchor{},
           JudgeWall{},
+          MeasureWall{},
+          PinCorner{},
           AddStroke{},
           EraseStroke{},
           ClearSketch{},

@@ -9,6 +9,9 @@ export interface CommandData {
   add_anchor: { id: string; px: LayoutPx; map: MapPoint };
   remove_anchor: { id: string };
   judge_wall: { wall: number; verdict: 'none' | 'gone' | 'there' };
+  /** In metres; null takes it back. */
+  measure_wall: { wall: number; length: number | null };
+  pin_corner: { corner: number; map: MapPoint | null };
   add_stroke: { stroke_id: string; kind: StrokeKind; width: number; points: readonly SketchPx[] };
   erase_stroke: { stroke_id: string; restore: boolean };
   clear_sketch: Record<string, never>;
@@ -27,7 +30,7 @@ export type CommandName = keyof CommandData;
 export type Command = { [N in CommandName]: { readonly name: N; readonly data: CommandData[N] } }[CommandName];
 
 const kCommanderOnly: ReadonlySet<CommandName> = new Set<CommandName>([
-  'set_layout', 'set_start', 'add_anchor', 'remove_anchor', 'judge_wall', 'set_goal', 'cancel_goal', 'set_exploring',
+  'set_layout', 'set_start', 'add_anchor', 'remove_anchor', 'judge_wall', 'measure_wall', 'pin_corner', 'set_goal', 'cancel_goal', 'set_exploring',
 ]);
 
 /** What the server would refuse anyway, known here so that the control can say why it is off. */
