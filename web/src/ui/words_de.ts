@@ -101,6 +101,8 @@ export const de: Readonly<Record<Key, string>> = {
   'wallSheet.gone': 'Ist weg',
   'wallSheet.there': 'Ist da',
   'wallSheet.sensors': 'Sensoren entscheiden',
+  'wallSheet.length': 'Länge in Metern',
+  'wallSheet.measure': 'Nachgemessen',
 
   'fit.fits': 'Der Plan passt zu dem, was die Roboter sehen.',
   'fit.doubtful': 'Es ist zweifelhaft, ob der Plan zum Gebäude passt.',
@@ -317,6 +319,8 @@ export const de: Readonly<Record<Key, string>> = {
   'command.add_anchor': 'Anker gesetzt',
   'command.remove_anchor': 'Anker entfernt',
   'command.judge_wall': 'Wand beurteilt',
+  'command.measure_wall': 'Wand nachgemessen',
+  'command.pin_corner': 'Ecke festgesteckt',
   'command.add_stroke': 'Strich gezeichnet',
   'command.erase_stroke': 'Strich radiert oder zurückgeholt',
   'command.clear_sketch': 'Skizze geleert',

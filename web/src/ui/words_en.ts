@@ -99,6 +99,8 @@ export const en = {
   'wallSheet.gone': 'Is gone',
   'wallSheet.there': 'Is there',
   'wallSheet.sensors': 'Let sensors decide',
+  'wallSheet.length': 'length in metres',
+  'wallSheet.measure': 'I measured it',
 
   'fit.fits': 'This plan fits what the robots see.',
   'fit.doubtful': 'It is doubtful that this plan fits the building.',
@@ -315,6 +317,8 @@ export const en = {
   'command.add_anchor': 'Anchor added',
   'command.remove_anchor': 'Anchor removed',
   'command.judge_wall': 'Wall judged',
+  'command.measure_wall': 'Wall measured',
+  'command.pin_corner': 'Corner pinned',
   'command.add_stroke': 'Stroke drawn',
   'command.erase_stroke': 'Stroke erased or restored',
   'command.clear_sketch': 'Sketch cleared',
