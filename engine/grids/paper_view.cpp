@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -47,8 +48,8 @@ WorkPicture at_work_size(const cv::Mat& bgr, double min_long_side_px, double max
   if (scale == 1) return {bgr, 1};
   WorkPicture work;
   work.scale = scale;
-  const cv::Size size(std::max(1, static_cast<int>(bgr.cols * scale + 0.5)),
-                      std::max(1, static_cast<int>(bgr.rows * scale + 0.5)));
+  const cv::Size size(std::max(1, static_cast<int>(std::lround(bgr.cols * scale))),
+                      std::max(1, static_cast<int>(std::lround(bgr.rows * scale))));
   cv::resize(bgr, work.bgr, size, 0, 0, scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
   return work;
 }

@@ -42,6 +42,6 @@ class FrameTree {
 };
 
 /// Heading of a rotation about z, as REP 103 has it. Zero-length or non-finite quaternions give nothing.
-std::optional<double> heading_of(const Eigen::Quaterniond& rotation);
+std::optional<double> heading_of(const Eigen::Quaterniond& q);
 
 }  // namespace smokemap

@@ -54,18 +54,18 @@ class Fleet {
   void report(const PoseReport& report);
   void set_map(std::shared_ptr<const CostMap> map) { map_ = std::move(map); }
   /// What the merge says about the newest poses of a robot in the graph.
-  void set_correction(const std::string& robot, const Pose2& T_map_graph);
+  void set_correction(const std::string& id, const Pose2& T_map_graph);
 
   /// Ten times a second: chooses what each robot does, drives it, moves goals through their states.
   void tick(Stamp now, Whiteboard& board, const Carrier& carrier);
-  /// At once, before anything else.
-  void stop_now(const std::string& robot);
+  /// At once, before anything else; an empty id stops all.
+  void stop_now(const std::string& id);
 
   std::vector<RobotStatus> status() const;
   /// Distance and time to go of the goal that a robot drives to; zeros for others.
   GoalView view(const Goal& goal, const Carrier& carrier) const;
   /// Where SLAM has the robot now; nothing for a robot never localised.
-  std::optional<Pose2> T_graph_robot(const std::string& robot) const;
+  std::optional<Pose2> T_graph_robot(const std::string& id) const;
 
  private:
   struct Robot {
