@@ -42,7 +42,7 @@ describe('with and without a link', { timeout: 120_000 }, () => {
     await page.waitForFunction(() => navigator.serviceWorker.controller !== null);
     const painted = await anna.paintedPixels();
     assert.ok(painted > 1000);
-    await page.waitForFunction(keptOnDisk, 'Before the reload');
+    await anna.until(() => page.evaluate(keptOnDisk, 'Before the reload'));
     await smokemap.kill();
     await page.reload();
     await anna.see('Before the reload');

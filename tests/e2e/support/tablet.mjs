@@ -134,6 +134,16 @@ export class Tablet {
     await this.#painted();
   }
 
+  /** Waits until `look` gives something. */
+  async until(look, ms = kPatientMs) {
+    for (const end = Date.now() + ms; Date.now() < end; ) {
+      const found = await look();
+      if (found) return found;
+      await this.#painted();
+    }
+    throw new Error('what was waited for never came');
+  }
+
   /** Every act is with the server: nothing waits. */
   async settled() {
     await this.page.waitForFunction(() => !document.querySelector('[data-testid=link]').textContent.includes('waiting'));

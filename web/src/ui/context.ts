@@ -14,6 +14,9 @@ export interface Shared {
   prepare?: Prepare;
 }
 
+/** For pages that are rendered without the shell. */
+export const contextOf = (shared: Shared): Map<unknown, unknown> => new Map([[kSession, shared]]);
+
 export const provide = (shared: Shared): Shared => setContext(kSession, shared);
 export const useShared = (): Shared => getContext<Shared>(kSession);
 export const useSession = (): Session => useShared().session;
