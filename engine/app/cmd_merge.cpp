@@ -6,9 +6,11 @@
 #include <string>
 
 #include "acg/auto_complete_graph.hpp"
+#include "acg/published_graph.hpp"
 #include "app/commands.hpp"
 #include "app/merge_files.hpp"
 #include "app/merge_preview.hpp"
+#include "localization/localize_nodes.hpp"
 #include "recording/layout_json.hpp"
 #include "recording/map_server.hpp"
 #include "recording/sensor_log.hpp"
@@ -23,7 +25,7 @@ namespace {
 constexpr std::size_t kOptimizeEveryScans = 20;
 
 struct MergeArguments {
-  std::string layout, log, anchors, points, output, trajectory, map, preview;
+  std::string layout, log, anchors, points, output, trajectory, map, preview, method = "smokemap";
 };
 
 /// What was read and worked out, before anything is written.
@@ -86,6 +88,41 @@ Result<Ok> run_robot(const std::string& path, Merging& work) {
   return Ok{};
 }
 
+/// The plan laid down by the given start or pairs, its walls followed by Monte-Carlo localisation: what the published
+/// programs had.
+Result<Ok> merge_published(PublishedMethod method, Merging& work) {
+  PublishedInput input;
+  input.plan = work.layout;
+  input.graph = work.graph;
+  const PixelFrame frame = work.layout.frame();
+  if (work.anchors.pairs.size() >= 2) {
+    std::vector<PointPair> pairs;
+    for (const auto& pair : work.anchors.pairs) pairs.push_back({pair.p_map, frame.to_metres(pair.p_layout_px), 0.1});
+    const auto fit = fit_similarity(pairs);
+    if (!fit) return fit.error();
+    input.map_from_layout = *fit;
+  } else if (work.anchors.start) {
+    input.map_from_layout =
+        Similarity2{1, work.graph.nodes.front().T_map_robot * work.anchors.start->T_layout_robot.inverse()};
+  } else {
+    return fail(Errc::kInvalidArgument, "the published methods need a start or two pairs with --anchors");
+  }
+  std::vector<LocalizerWall> walls;
+  for (std::size_t w = 0; w < work.layout.walls.size(); ++w) {
+    const Segment2 s = work.layout.wall_m(static_cast<int>(w));
+    walls.push_back({{input.map_from_layout * s.a, input.map_from_layout * s.b},
+                     work.layout.walls[w].thickness_px * frame.metres_per_pixel});
+  }
+  for (const LocalizerEstimate& e : localize_nodes(walls, work.graph, work.graph.nodes.front().T_map_robot)) {
+    input.localized.emplace_back();
+    if (!e.lost) input.localized.back() = LocalizedNode{e.T_map_robot, e.covariance.topLeftCorner<2, 2>()};
+  }
+  auto merged = merge_as_published(method, input);
+  if (!merged) return merged.error();
+  work.merged = std::move(*merged);
+  return Ok{};
+}
+
 Result<Ok> merge(Merging& work) {
   AutoCompleteGraph acg;
   if (const auto set = acg.set_plan(work.layout, work.anchors.start); !set) return set;
@@ -127,7 +164,10 @@ Result<Ok> run_merge(const MergeArguments& arguments) {
   Merging work;
   if (const auto read = read_plan(arguments, work); !read) return read;
   if (const auto driven = run_robot(arguments.log, work); !driven) return driven;
-  if (const auto merged = merge(work); !merged) return merged;
+  const auto merged = arguments.method == "acg2017"   ? merge_published(PublishedMethod::kAcg2017, work)
+                      : arguments.method == "acg2019" ? merge_published(PublishedMethod::kAcg2019, work)
+                                                      : merge(work);
+  if (!merged) return merged;
   return write_answers(arguments, work);
 }
 
@@ -148,6 +188,10 @@ void add_merge(CLI::App& app, Outcome& outcome) {
   command->add_option("--map", arguments->map, "also write PREFIX.pgm, .yaml and .png of what was sensed")
       ->type_name("PREFIX");
   command->add_option("--preview", arguments->preview, "PNG of the merged map");
+  command
+      ->add_option("--method", arguments->method,
+                   "smokemap; for comparison: acg2017, acg2019 (the Auto-Complete Graph as published)")
+      ->check(CLI::IsMember({"smokemap", "acg2017", "acg2019"}));
   command->callback([arguments, &outcome] {
     if (const auto done = run_merge(*arguments); !done) outcome.no_answer(done.error());
   });
