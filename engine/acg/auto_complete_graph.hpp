@@ -56,11 +56,11 @@ class AutoCompleteGraph {
   void remove_anchor(const std::string& id);
   /// kNotFound for a wall that the plan does not have.
   Result<Ok> judge_wall(int layout_wall, WallJudgement judgement);
-  /// "This corner of the plan is here": holds it there within a centimetre, whatever sensors say. Nothing takes the pin out.
-  /// kNotFound for a corner that the plan does not have.
+  /// "This corner of the plan is here": holds it there within a centimetre, whatever sensors say. Nothing takes the pin
+  /// out. kNotFound for a corner that the plan does not have.
   Result<Ok> pin_corner(int layout_corner, const std::optional<Point2>& p_map);
-  /// "This wall is 4.2 m long": holds its length within a centimetre. Nothing takes it back. kNotFound for a wall that the plan
-  /// does not have, kInvalidArgument for a length that no wall has.
+  /// "This wall is 4.2 m long": holds its length within a centimetre. Nothing takes it back. kNotFound for a wall that
+  /// the plan does not have, kInvalidArgument for a length that no wall has.
   Result<Ok> set_wall_length(int layout_wall, const std::optional<double>& length_m);
 
   /// Takes up what is new in the graph (nodes may be added and poses may be corrected by SLAM; ids must stay) and
