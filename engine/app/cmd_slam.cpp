@@ -48,7 +48,9 @@ nlohmann::json stats_of(const Slam& slam, const SensorLog& log) {
           {"odometry_jumps", c.jumps},
           {"without_odometry", c.without_odometry},
           {"pieces_begun_anew", c.lost},
+          {"pieces_found_again", c.relocated},
           {"smoke_beams", c.smoke_beams},
+          {"smoke_share", c.smoke_share},
           {"warnings", log.warnings}};
 }
 

@@ -6,7 +6,9 @@
 namespace smokemap {
 namespace {
 constexpr double kLongestExtrapolation_s = 0.5;
-}
+constexpr double kTwistMemory_s = 0.4;
+constexpr double kMostOfNewTwist = 0.7;
+}  // namespace
 
 void OdometryBuffer::add(const Odometry& reading) {
   if (!reading.T_odom_robot.is_finite()) return;
@@ -44,6 +46,13 @@ std::optional<Twist2> OdometryBuffer::twist() const {
 Twist2 twist_of(const Pose2& T_before_now, double seconds) {
   if (!(seconds > 1e-3)) return {};
   return {T_before_now.translation() / seconds, T_before_now.heading() / seconds};
+}
+
+Twist2 smoothed(const std::optional<Twist2>& before, const Twist2& measured, double seconds) {
+  if (!before) return measured;
+  const double share = std::min(kMostOfNewTwist, 1 - std::exp(-seconds / kTwistMemory_s));
+  return {before->velocity_mps + share * (measured.velocity_mps - before->velocity_mps),
+          before->turn_radps + share * (measured.turn_radps - before->turn_radps)};
 }
 
 PredictedStep predict_step(const std::optional<Pose2>& T_odom_before, const std::optional<Pose2>& T_odom_now,

@@ -40,4 +40,9 @@ PredictedStep predict_step(const std::optional<Pose2>& T_odom_before, const std:
 /// The constant motion that makes a step in the given time; zero for no time.
 Twist2 twist_of(const Pose2& T_before_now, double seconds);
 
+/// The velocity to go on with after a step at `measured` that took `seconds`: a share of the new one. A velocity taken
+/// from one step straightens the next scan wrongly by its error, whose match then errs the other way: without the share
+/// that swings for ever at ten scans a second.
+Twist2 smoothed(const std::optional<Twist2>& before, const Twist2& measured, double seconds);
+
 }  // namespace smokemap

@@ -9,6 +9,8 @@
 namespace smokemap {
 namespace {
 
+constexpr double kApart_m = 0.5;  ///< echoes of one azimuth this far apart are two surfaces
+
 /// Echoes by cells of the neighbourhood's size.
 class EchoGrid {
  public:
@@ -68,12 +70,16 @@ std::vector<RadarEcho> strongest_echoes(const RadarSweep& sweep, const Twist2& t
     }
     std::stable_sort(peaks.begin(), peaks.end(), [&](int i, int j) { return power[i] > power[j]; });
     peaks.resize(std::min(peaks.size(), static_cast<std::size_t>(params.strongest)));
+    std::sort(peaks.begin(), peaks.end());  // near to far
     const Pose2 T_start_now = twist.after(sweep.duration_s * a / sweep.azimuths);
     const double angle = sweep.azimuth_min_rad + a * sweep.azimuth_increment_rad;
+    double behind = 1, last_range = -kApart_m;
     for (const int b : peaks) {
       const double range = sweep.range_min_m + b * sweep.range_resolution_m;
+      if (range - last_range > kApart_m && last_range > 0) behind *= params.behind_share;
+      last_range = range;
       const Point2 p = T_start_now * (sweep.T_robot_radar * Point2(range * std::cos(angle), range * std::sin(angle)));
-      echoes.push_back({p, a, range, std::log(static_cast<double>(power[b]))});
+      echoes.push_back({p, a, range, behind * std::log(static_cast<double>(power[b]))});
     }
   }
   return echoes;
@@ -87,14 +93,15 @@ ScanPoints surface_points(const RadarSweep& sweep, const Twist2& twist, const Ra
   ScanPoints out;
   std::vector<Point2> hits;
   std::vector<bool> drawn(static_cast<std::size_t>(sweep.azimuths), false);
-  std::vector<const RadarEcho*> kept;
-  for (const RadarEcho& echo : echoes) {  // strongest first within an azimuth
-    const bool close = std::any_of(kept.begin(), kept.end(),
-                                   [&](const RadarEcho* k) { return (k->p - echo.p).norm() < radar.spacing_m; });
-    if (!close) kept.push_back(&echo);
-  }
-  std::stable_sort(kept.begin(), kept.end(),
+  std::vector<const RadarEcho*> kept, by_weight;
+  for (const RadarEcho& echo : echoes) by_weight.push_back(&echo);
+  std::stable_sort(by_weight.begin(), by_weight.end(),
                    [](const RadarEcho* a, const RadarEcho* b) { return a->weight > b->weight; });
+  for (const RadarEcho* echo : by_weight) {
+    const bool close = std::any_of(kept.begin(), kept.end(),
+                                   [&](const RadarEcho* k) { return (k->p - echo->p).norm() < radar.spacing_m; });
+    if (!close) kept.push_back(echo);
+  }
   for (const RadarEcho* echo : kept) {
     if (out.surface.size() == static_cast<std::size_t>(points.most_points)) break;
     const SurfacePoint point = surface_around(near, *echo, p_sensor);

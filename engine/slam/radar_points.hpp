@@ -8,7 +8,8 @@
 namespace smokemap {
 
 /// The strongest echoes of each azimuth, in the robot frame at the sweep's stamp, straightened.
-/// weight = log of power over receiver noise.
+/// weight = log of power over receiver noise, less for echoes behind others of their azimuth: what a mirror shows
+/// stands behind the mirror, and so does what shines through a wall.
 struct RadarEcho {
   Point2 p = Point2::Zero();
   int azimuth = 0;
@@ -16,7 +17,8 @@ struct RadarEcho {
   double weight = 0;
 };
 
-/// At most params.strongest local maxima of power per azimuth, over params.least_power, within the range limits.
+/// At most params.strongest local maxima of power per azimuth, over params.least_power, within the range limits; near
+/// to far within an azimuth.
 std::vector<RadarEcho> strongest_echoes(const RadarSweep& sweep, const Twist2& twist, const RadarParams& params);
 
 /// Weighted oriented surface points for the matcher: mean and main direction of the echoes around each thinned one.

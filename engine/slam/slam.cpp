@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/covariance.hpp"
 #include "maps/radar_image.hpp"
@@ -12,6 +13,22 @@ namespace smokemap {
 namespace {
 
 constexpr double kSweepIsFresh_s = 1.0;
+constexpr double kSmokeMemory = 0.3;  ///< share of the newest scan in the estimate of smoke
+constexpr double kClearShare = 0.35;  ///< radar and lidar disagree on so many beams in clear air
+constexpr double kSmokeIsAll = 0.75;
+
+/// Joins a radar's points to a scan's: as exact as they are compared with a lidar's, times `weight`.
+void add_radar(ScanPoints& points, const ScanPoints& radar, const Pose2& T_now_then, double weight,
+               const SlamParams& params) {
+  const double exactness = params.align.sigma_point_m / params.radar.align.sigma_point_m;
+  const Eigen::Matrix2d R = T_now_then.rotation();
+  for (const SurfacePoint& point : radar.surface)
+    points.surface.push_back({T_now_then * point.p, R * point.normal, weight * exactness * exactness * point.weight});
+  if (weight < 1) return;
+  auto hits = *points.hits_robot;
+  for (const Point2& p : *radar.hits_robot) hits.push_back(T_now_then * p);
+  points.hits_robot = std::make_shared<const std::vector<Point2>>(std::move(hits));
+}
 
 /// Where a scan stands relative to the graph.
 struct Anchor {
@@ -43,7 +60,7 @@ const char* to_string(ScanFate fate) {
 
 class Slam::Impl {
  public:
-  Impl(const SlamParams& params, GraphWork work) : params_(params), front_(params), worker_(params, work) {}
+  Impl(const SlamParams& params, GraphWork work) : params_(params), work_(work) {}
 
   void add_odometry(const Odometry& reading) {
     ++counters_.odometry;
@@ -59,15 +76,18 @@ class Slam::Impl {
   bool take_over(const GraphUpdate* update);
 
   SlamParams params_;
-  FrontEnd front_;
+  GraphWork work_;
   PoseGraph graph_;  ///< nodes and the front end's edges as they come, the rest as of the newest update
   SlamCounters counters_;
-  GraphWorker worker_;
+  std::optional<FrontEnd> front_;  ///< with the first scan or sweep, which says what kind of points come
+  std::unique_ptr<GraphWorker> worker_;
 
  private:
   ScanOutcome add_points(Stamp stamp, const std::string& robot, const ScanPoints& points);
   PredictedStep predict(Stamp stamp);
-  std::vector<bool> smoke_in(const LaserScan& scan);
+  void begin(const SlamParams& matching);
+  ScanPoints points_of(const LaserScan& scan);
+  Pose2 track_pose() const { return front_ ? front_->T_track_robot() : Pose2(); }
   Pose2 pose_of(const Anchor& anchor) const;
   void keep_node(Stamp stamp, const std::string& robot, const ScanPoints& points, const FrontEnd::Tracked& tracked);
   void count(ScanFate fate);
@@ -80,6 +100,8 @@ class Slam::Impl {
   std::vector<float> last_ranges_;
   std::optional<RadarSweep> last_sweep_;
   std::optional<Pose2> T_odom_sweep_;
+  bool sweep_is_new_ = false;
+  double smoke_share_ = 0;
   bool has_lidar_ = false;
   std::vector<Anchor> anchors_;       ///< one per scan
   std::vector<Pose2> T_track_nodes_;  ///< where the front end put each node
@@ -99,9 +121,8 @@ Result<ScanOutcome> Slam::Impl::add_scan(const LaserScan& scan) {
     return ScanOutcome{scan.stamp, ScanFate::kDuplicate, latest(), std::nullopt, 0};
   }
   last_ranges_ = scan.ranges_m;
-  const ScanPoints points =
-      surface_points(scan, params_.beams, twist_for_straightening(), params_.points, smoke_in(scan));
-  return add_points(scan.stamp, scan.robot, points);
+  begin(params_);
+  return add_points(scan.stamp, scan.robot, points_of(scan));
 }
 
 Result<ScanOutcome> Slam::Impl::add_sweep(const RadarSweep& sweep) {
@@ -112,22 +133,39 @@ Result<ScanOutcome> Slam::Impl::add_sweep(const RadarSweep& sweep) {
   ++counters_.sweeps;
   if (has_lidar_) {
     last_sweep_ = sweep;
+    sweep_is_new_ = true;
     T_odom_sweep_ = odometry_.at(sweep.stamp);
     return ScanOutcome{sweep.stamp, ScanFate::kMatched, latest(), std::nullopt, 0};
   }
+  begin(params_.for_radar());
   return add_points(sweep.stamp, sweep.robot,
                     surface_points(sweep, twist_for_straightening(), params_.radar, params_.points));
 }
 
-/// Beams that the newest sweep calls smoke; none when there is no fresh sweep.
-std::vector<bool> Slam::Impl::smoke_in(const LaserScan& scan) {
-  if (!last_sweep_ || std::abs(to_seconds(scan.stamp - last_sweep_->stamp)) > kSweepIsFresh_s) return {};
+void Slam::Impl::begin(const SlamParams& matching) {
+  if (front_) return;
+  front_.emplace(matching);
+  worker_ = std::make_unique<GraphWorker>(matching, work_);
+}
+
+/// The lidar's points; beams that the newest sweep calls smoke left out. The thicker the smoke, the more the radar's
+/// own points count: none in clear air, all there is where the lidar sees nothing. Each sweep is used once.
+ScanPoints Slam::Impl::points_of(const LaserScan& scan) {
+  const Twist2 twist = twist_for_straightening();
+  if (!last_sweep_ || std::abs(to_seconds(scan.stamp - last_sweep_->stamp)) > kSweepIsFresh_s)
+    return surface_points(scan, params_.beams, twist, params_.points);
   Pose2 T_now_then;
   if (const auto T_odom_now = odometry_.at(scan.stamp); T_odom_now && T_odom_sweep_)
     T_now_then = T_odom_now->inverse() * *T_odom_sweep_;
-  std::vector<bool> smoke = smoke_beams(scan, params_.beams, *last_sweep_, T_now_then, params_.radar);
-  counters_.smoke_beams += std::count(smoke.begin(), smoke.end(), true);
-  return smoke;
+  const SmokeView view = look_for_smoke(scan, params_.beams, *last_sweep_, T_now_then, params_.radar);
+  counters_.smoke_beams += std::count(view.beams.begin(), view.beams.end(), true);
+  smoke_share_ += kSmokeMemory * (view.share - smoke_share_);
+  counters_.smoke_share = smoke_share_;
+  ScanPoints points = surface_points(scan, params_.beams, twist, params_.points, view.beams);
+  const double weight = std::clamp((smoke_share_ - kClearShare) / (kSmokeIsAll - kClearShare), 0.0, 1.0);
+  if (!std::exchange(sweep_is_new_, false) || weight <= 0) return points;
+  add_radar(points, surface_points(*last_sweep_, twist, params_.radar, params_.points), T_now_then, weight, params_);
+  return points;
 }
 
 PredictedStep Slam::Impl::predict(Stamp stamp) {
@@ -145,11 +183,12 @@ PredictedStep Slam::Impl::predict(Stamp stamp) {
 ScanOutcome Slam::Impl::add_points(Stamp stamp, const std::string& robot, const ScanPoints& points) {
   const PredictedStep step = predict(stamp);
   const double seconds = last_stamp_ ? to_seconds(stamp - *last_stamp_) : 0;
-  const Pose2 T_track_before = front_.T_track_robot();
-  const FrontEnd::Tracked tracked = front_.track(points, step);
+  const Pose2 T_track_before = track_pose();
+  const FrontEnd::Tracked tracked = front_->track(points, step);
   last_stamp_ = stamp;
   if (tracked.fate == ScanFate::kMatched && seconds > 1e-3)
-    twist_ = twist_of(T_track_before.inverse() * tracked.T_track_robot, seconds);
+    twist_ = smoothed(twist_, twist_of(T_track_before.inverse() * tracked.T_track_robot, seconds), seconds);
+  if (tracked.fate == ScanFate::kNewPiece) twist_.reset();  // it led astray
   count(tracked.fate);
   ScanOutcome outcome{stamp, tracked.fate, {}, std::nullopt, tracked.score};
   if (tracked.node) {
@@ -185,7 +224,7 @@ void Slam::Impl::keep_node(Stamp stamp, const std::string& robot, const ScanPoin
     graph_.edges.insert(graph_.edges.begin() + node.id - 1, edge);
   }
   graph_.nodes.push_back(node);
-  worker_.add({std::move(node), points.surface, edge, tracked.fate == ScanFate::kNewPiece});
+  worker_->add({std::move(node), points.surface, edge, tracked.fate == ScanFate::kNewPiece});
   T_track_nodes_.push_back(tracked.T_track_robot);
 }
 
@@ -236,13 +275,13 @@ Pose2 Slam::Impl::T_map_track() const {
 StampedPose Slam::Impl::latest() const {
   StampedPose pose;
   pose.stamp = last_stamp_.value_or(0);
-  pose.T_map_robot = T_map_track() * front_.T_track_robot();
+  pose.T_map_robot = T_map_track() * track_pose();
   if (!anchors_.empty()) pose.covariance = anchors_.back().covariance;
   return pose;
 }
 
 Pose2 Slam::Impl::T_map_odom() const {
-  return T_odom_last_ ? T_map_track() * front_.T_track_robot() * T_odom_last_->inverse() : Pose2();
+  return T_odom_last_ ? T_map_track() * track_pose() * T_odom_last_->inverse() : Pose2();
 }
 
 Trajectory Slam::Impl::trajectory() const {
@@ -261,8 +300,12 @@ void Slam::add_odometry(const Odometry& odometry) { impl_->add_odometry(odometry
 Result<ScanOutcome> Slam::add_scan(const LaserScan& scan) { return impl_->add_scan(scan); }
 Result<ScanOutcome> Slam::add_sweep(const RadarSweep& sweep) { return impl_->add_sweep(sweep); }
 
-bool Slam::optimize(const Progress& progress) { return impl_->take_over(impl_->worker_.catch_up(progress).get()); }
-void Slam::polish(const Progress& progress) { impl_->take_over(impl_->worker_.polish(progress).get()); }
+bool Slam::optimize(const Progress& progress) {
+  return impl_->worker_ && impl_->take_over(impl_->worker_->catch_up(progress).get());
+}
+void Slam::polish(const Progress& progress) {
+  if (impl_->worker_) impl_->take_over(impl_->worker_->polish(progress).get());
+}
 
 StampedPose Slam::latest_pose() const { return impl_->latest(); }
 Pose2 Slam::T_map_odom() const { return impl_->T_map_odom(); }

@@ -40,6 +40,7 @@ struct SlamCounters {
   std::int64_t without_odometry = 0;  ///< predicted from the last velocity
   std::int64_t lost = 0;              ///< new pieces of map begun because nothing fitted for a while
   std::int64_t smoke_beams = 0;       ///< lidar echoes the radar saw through
+  double smoke_share = 0;             ///< newest estimate: of walls the radar sees, those the lidar does not
   std::int64_t relocated = 0;         ///< new pieces that were found again in the map, wherever it was
   std::int64_t loops_tried = 0;
   std::int64_t loops_closed = 0;
@@ -66,7 +67,8 @@ class Slam {
   void add_odometry(const Odometry& odometry);
   /// Fails only for what check(scan) refuses; the trajectory then keeps its length.
   Result<ScanOutcome> add_scan(const LaserScan& scan);
-  /// The same for a radar turn. When lidar scans come too, the sweep is used to find the lidar's smoke echoes.
+  /// The same for a radar turn. When lidar scans come too, the sweep shows which of their echoes are smoke, and its own
+  /// points join the next scan, the more the thicker the smoke is.
   Result<ScanOutcome> add_sweep(const RadarSweep& sweep);
 
   /// Takes over the newest node poses and loops. Without a background, searches and solves for the nodes not worked off

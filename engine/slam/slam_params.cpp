@@ -83,6 +83,7 @@ Result<Ok> GraphParams::validate() const {
 }
 
 Result<Ok> RadarParams::validate() const {
+  if (const Result<Ok> part = align.validate(); !part) return part;
   return ParamCheck("RadarParams")
       .in_range("strongest", strongest, 1, 200)
       .positive("least_power", least_power)
@@ -90,7 +91,28 @@ Result<Ok> RadarParams::validate() const {
       .in_range("farthest_m", farthest_m, nearest_m, 500)
       .positive("surface_radius_m", surface_radius_m)
       .positive("spacing_m", spacing_m)
+      .in_range("behind_share", behind_share, 0, 1)
+      .in_range("cell_m", cell_m, 0.02, 2)
+      .in_range("good_score", good_score, 0, 1)
+      .in_range("least_score", least_score, 0, good_score)
+      .in_range("fair_score", fair_score, 0, least_score)
+      .in_range("least_search_score", least_search_score, 0, 1)
+      .in_range("least_align_score", least_align_score, 0, 1)
+      .in_range("least_pair_score", least_pair_score, 0, 1)
       .result();
+}
+
+SlamParams SlamParams::for_radar() const {
+  SlamParams params = *this;
+  params.align = radar.align;
+  params.front_end.cell_m = radar.cell_m;
+  params.front_end.good_score = radar.good_score;
+  params.front_end.least_score = radar.least_score;
+  params.front_end.fair_score = radar.fair_score;
+  params.loops.least_search_score = radar.least_search_score;
+  params.loops.least_align_score = radar.least_align_score;
+  params.graph.least_pair_score = radar.least_pair_score;
+  return params;
 }
 
 Result<Ok> SlamParams::validate() const {

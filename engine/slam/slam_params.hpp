@@ -84,7 +84,8 @@ struct GraphParams {
   Result<Ok> validate() const;
 };
 
-/// Power over azimuth and range to points.
+/// Power over azimuth and range to points, and how they are matched where the radar works alone. Walls are a beam's
+/// width wide and speckled: gates, cells and expectations are several times those of a lidar.
 struct RadarParams {
   int strongest = 12;         ///< bins kept per azimuth
   double least_power = 12.0;  ///< times the receiver noise
@@ -92,6 +93,20 @@ struct RadarParams {
   double farthest_m = 15.0;
   double surface_radius_m = 0.50;  ///< neighbours that make an oriented surface point
   double spacing_m = 0.25;
+  double behind_share =
+      0.5;  ///< an echo behind n others of its azimuth has the weight this^n: mirror images are behind
+  AlignParams align{.iterations = 15,
+                    .gate_m = 0.60,
+                    .last_gate_m = 0.25,
+                    .reach_m = 0.80,
+                    .sigma_point_m = 0.08,
+                    .normals_within = 0.70,
+                    .stop_m = 1e-3,
+                    .stop_rad = 2e-4};
+  double cell_m = 0.20;
+  double good_score = 0.45, least_score = 0.25, fair_score = 0.12;  ///< as in FrontEndParams
+  double least_search_score = 0.50, least_align_score = 0.45;       ///< as in LoopParams
+  double least_pair_score = 0.30;                                   ///< as in GraphParams
   Result<Ok> validate() const;
 };
 
@@ -106,6 +121,8 @@ struct SlamParams {
   GraphParams graph;
   RadarParams radar;
   Result<Ok> validate() const;
+  /// The same with matching as the radar alone needs it.
+  SlamParams for_radar() const;
 };
 
 }  // namespace smokemap

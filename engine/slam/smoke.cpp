@@ -12,6 +12,8 @@ constexpr double kBehind_m = 0.60;     ///< an echo this far behind the lidar's 
 constexpr double kSame_m = 0.35;       ///< an echo this near to the lidar's confirms it
 constexpr double kSector_rad = 0.175;  ///< half width
 constexpr double kSmokeShare = 0.60;
+constexpr double kNear_m = 8.0;  ///< a wall that a lidar shows in clear air
+constexpr int kLeastExpected = 20;
 
 enum class Opinion { kNone, kWall, kSmoke };
 
@@ -29,10 +31,10 @@ Opinion ask(const std::vector<std::vector<double>>& ranges_by_bearing, std::size
 
 }  // namespace
 
-std::vector<bool> smoke_beams(const LaserScan& scan, const BeamConvention& convention, const RadarSweep& sweep,
-                              const Pose2& T_now_then, const RadarParams& params) {
+SmokeView look_for_smoke(const LaserScan& scan, const BeamConvention& convention, const RadarSweep& sweep,
+                         const Pose2& T_now_then, const RadarParams& params) {
   const std::size_t beams = scan.ranges_m.size();
-  std::vector<bool> smoke(beams, false);
+  SmokeView view{std::vector<bool>(beams, false), 0};
   constexpr std::size_t kBearings = 180;
   std::vector<std::vector<double>> ranges_by_bearing(kBearings);
   const Pose2 T_laser_then = scan.T_robot_laser.inverse() * T_now_then;
@@ -42,13 +44,21 @@ std::vector<bool> smoke_beams(const LaserScan& scan, const BeamConvention& conve
     ranges_by_bearing[static_cast<std::size_t>(share * kBearings) % kBearings].push_back(p.norm());
   }
   std::vector<Opinion> opinions(beams, Opinion::kNone);
+  int expected = 0, shown = 0;
   for (std::size_t i = 0; i < beams; ++i) {
     const double range = static_cast<double>(scan.ranges_m[i]);
-    if (classify(scan.ranges_m[i], scan, convention) != BeamKind::kHit || range < params.nearest_m) continue;
+    const bool hit = classify(scan.ranges_m[i], scan, convention) == BeamKind::kHit;
+    if (hit && range < params.nearest_m) continue;
     const double angle = wrap_angle(scan.angle_min_rad + static_cast<double>(i) * scan.angle_increment_rad);
-    opinions[i] =
-        ask(ranges_by_bearing, static_cast<std::size_t>((angle + kPi) / (2 * kPi) * kBearings) % kBearings, range);
+    const std::size_t bearing = static_cast<std::size_t>((angle + kPi) / (2 * kPi) * kBearings) % kBearings;
+    if (hit) opinions[i] = ask(ranges_by_bearing, bearing, range);
+    const bool near_wall = std::any_of(ranges_by_bearing[bearing].begin(), ranges_by_bearing[bearing].end(),
+                                       [](double echo) { return echo < kNear_m; });
+    if (hit ? opinions[i] == Opinion::kNone : !near_wall) continue;
+    ++expected;
+    shown += opinions[i] == Opinion::kWall;
   }
+  if (expected >= kLeastExpected) view.share = 1 - static_cast<double>(shown) / expected;
   const auto half = std::max<std::ptrdiff_t>(1, std::lround(kSector_rad / std::abs(scan.angle_increment_rad)));
   for (std::size_t i = 0; i < beams; ++i) {
     if (opinions[i] != Opinion::kSmoke) continue;
@@ -58,9 +68,9 @@ std::vector<bool> smoke_beams(const LaserScan& scan, const BeamConvention& conve
       says_smoke += opinions[static_cast<std::size_t>(j)] == Opinion::kSmoke;
       says_wall += opinions[static_cast<std::size_t>(j)] == Opinion::kWall;
     }
-    smoke[i] = says_smoke >= kSmokeShare * (says_smoke + says_wall);
+    view.beams[i] = says_smoke >= kSmokeShare * (says_smoke + says_wall);
   }
-  return smoke;
+  return view;
 }
 
 }  // namespace smokemap
