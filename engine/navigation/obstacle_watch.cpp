@@ -31,7 +31,7 @@ void ObstacleWatch::add_scan(const LaserScan& scan, const Pose2& T_odom_robot) {
   const std::size_t beams = distinct_beams(scan);
   std::vector<bool> smoke(scan.ranges_m.size(), false);
   if (sweep_ && std::abs(to_seconds(scan.stamp - sweep_->stamp)) < params_.sweep_valid_s)
-    smoke = smoke_beams(scan, convention, *sweep_, T_odom_robot.inverse() * T_odom_sweep_, RadarParams{});
+    smoke = look_for_smoke(scan, convention, *sweep_, T_odom_robot.inverse() * T_odom_sweep_, RadarParams{}).beams;
   Look look{T_odom_robot * scan.T_robot_laser, scan.angle_min_rad, scan.angle_increment_rad, {}};
   look.beams.reserve(beams);
   for (std::size_t i = 0; i < beams; ++i) {
