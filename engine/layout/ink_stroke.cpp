@@ -30,32 +30,6 @@ struct Ink {
   }
 };
 
-cv::Mat ink_mask(const cv::Mat& darkness, const LayoutParams& params) {
-  const int reach = std::max(3, std::max(darkness.rows, darkness.cols) / 280);
-  cv::Mat level;
-  cv::dilate(darkness, level, cv::getStructuringElement(cv::MORPH_RECT, {2 * reach + 1, 2 * reach + 1}));
-  level.convertTo(level, CV_8U, 0.5);
-  cv::min(level, 255 * params.ink_high, level);
-  cv::max(level, 255 * params.ink_low, level);
-  return darkness >= level;
-}
-
-/// The darkness of what is clearly ink: the upper quartile of everything darker than a mid gray.
-double usual_black(const cv::Mat& darkness) {
-  std::array<int, 256> histogram{};
-  for (int y = 0; y < darkness.rows; ++y)
-    for (int x = 0; x < darkness.cols; ++x) ++histogram[darkness.at<uchar>(y, x)];
-  const auto above = [&](int from) {
-    double count = 0;
-    for (int v = from; v < 256; ++v) count += histogram[static_cast<std::size_t>(v)];
-    return count;
-  };
-  const double ink = above(110);
-  int black = 255;
-  while (black > 110 && above(black) < 0.25 * ink) --black;
-  return ink > 0 ? black : 255;
-}
-
 struct CrossSection {
   double middle = 0;  ///< offset of the ink's middle along the normal
   double width = 0;
@@ -288,6 +262,31 @@ std::vector<Segment2> find_edges(const cv::Mat& darkness) {
 }
 
 }  // namespace
+
+double usual_black(const cv::Mat& darkness) {
+  std::array<int, 256> histogram{};
+  for (int y = 0; y < darkness.rows; ++y)
+    for (int x = 0; x < darkness.cols; ++x) ++histogram[darkness.at<uchar>(y, x)];
+  const auto above = [&](int from) {
+    double count = 0;
+    for (int v = from; v < 256; ++v) count += histogram[static_cast<std::size_t>(v)];
+    return count;
+  };
+  const double ink = above(110);
+  int black = 255;
+  while (black > 110 && above(black) < 0.25 * ink) --black;
+  return ink > 0 ? black : 255;
+}
+
+cv::Mat ink_mask(const cv::Mat& darkness, const LayoutParams& params) {
+  const int reach = std::max(3, std::max(darkness.rows, darkness.cols) / 280);
+  cv::Mat level;
+  cv::dilate(darkness, level, cv::getStructuringElement(cv::MORPH_RECT, {2 * reach + 1, 2 * reach + 1}));
+  level.convertTo(level, CV_8U, 0.5);
+  cv::min(level, 255 * params.ink_high, level);
+  cv::max(level, 255 * params.ink_low, level);
+  return darkness >= level;
+}
 
 std::vector<InkStroke> trace_strokes(const cv::Mat& darkness, const LayoutParams& params) {
   const double side = std::max(darkness.rows, darkness.cols);

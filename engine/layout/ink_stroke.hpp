@@ -19,6 +19,14 @@ struct InkStroke {
   double length() const { return axis.length(); }
 };
 
+/// What is darker than half of the darkest around it (and than ink_low): CV_8UC1, 255 = ink.
+/// @param darkness CV_8UC1, 0 paper .. 255 black
+cv::Mat ink_mask(const cv::Mat& darkness, const LayoutParams& params);
+
+/// How dark this picture's ink is, 0..255, where blur has not thinned it: the upper quartile of all that is clearly
+/// dark; 255 without ink.
+double usual_black(const cv::Mat& darkness);
+
 /// Finds straight pieces of ink: edges (line segment detector, in strips so that memory stays small), for each the
 /// width of the ink behind it, then the centre line is followed along the ink as far as it goes. Longest first; every
 /// piece of ink belongs to one stroke of each direction. Ink is what is darker than half of the darkest around it (and

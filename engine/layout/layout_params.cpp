@@ -12,6 +12,7 @@ Result<Ok> LayoutParams::validate() const {
       .in_range("background_share", background_share, 0.005, 0.2)
       .in_range("ink_low", ink_low, 0.05, 0.95)
       .in_range("ink_high", ink_high, ink_low, 0.95)
+      .in_range("solid_share", solid_share, 0.1, 1)
       .in_range("colour_chroma", colour_chroma, 0.05, 0.9)
       .in_range("min_wall_share", min_wall_share, 0.001, 0.1)
       .in_range("max_wall_share", max_wall_share, 0.005, 0.2)

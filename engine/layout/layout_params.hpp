@@ -16,6 +16,7 @@ struct LayoutParams {
   double background_share = 0.035;  ///< radius of what counts as paper around a pixel
   double ink_low = 0.20;            ///< ink is half as dark as the darkest around it, within these limits (1 = black)
   double ink_high = 0.50;
+  double solid_share = 0.6;     ///< of the darkness of the walls: lighter figures are tints, not signs
   double colour_chroma = 0.27;  ///< from here on a pixel is coloured: signs, routes, headers
 
   // walls

@@ -72,16 +72,6 @@ std::vector<Gap> gaps_ahead(const LayoutMap& map, double thickness_px, double re
   return gaps;
 }
 
-double covered_share(const Segment2& s, const cv::Mat& covered) {
-  int inside = 0, all = 0;
-  for (double t = 1; t < s.length(); t += 1, ++all) {
-    const Point2 p = s.a + t * s.direction();
-    const int x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
-    if (x >= 0 && y >= 0 && x < covered.cols && y < covered.rows && covered.at<uchar>(y, x)) ++inside;
-  }
-  return all ? static_cast<double>(inside) / all : 0;
-}
-
 /// Length of the gap along which some thin line runs within a wall's width.
 double lined_share(const Segment2& gap, const std::vector<InkStroke>& thin, double thickness_px) {
   double lined = 0;
@@ -108,6 +98,16 @@ bool has_leaf(const Segment2& gap, const std::vector<InkStroke>& thin, double th
 }
 
 }  // namespace
+
+double covered_share(const Segment2& s, const cv::Mat& covered) {
+  int inside = 0, all = 0;
+  for (double t = 1; t < s.length(); t += 1, ++all) {
+    const Point2 p = s.a + t * s.direction();
+    const int x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
+    if (x >= 0 && y >= 0 && x < covered.cols && y < covered.rows && covered.at<uchar>(y, x)) ++inside;
+  }
+  return all ? static_cast<double>(inside) / all : 0;
+}
 
 void close_gaps(LayoutMap& map, const std::vector<InkStroke>& thin, const cv::Mat& covered, double thickness_px,
                 const LayoutParams& params) {

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "grids/paper_view.hpp"
+#include "layout/clutter.hpp"
 #include "layout/ink_stroke.hpp"
 #include "layout/openings.hpp"
 #include "layout/rooms.hpp"
@@ -50,12 +52,54 @@ void add_warnings(LayoutMap& map, const WallStrokes& strokes, double extent_px) 
     map.warnings.push_back("The scale is guessed from doors: measure one length.");
 }
 
-/// Darkness without what has a colour, and without signs: routes, headers and pictograms are no ink.
-cv::Mat gray_ink(const PaperView& view, const cv::Mat& covered) {
-  cv::Mat ink;
+/// Darkness without what has a colour, without signs and without text: routes, headers and pictograms are no ink.
+cv::Mat legible_ink(const PaperView& view, const cv::Mat& covered, const LayoutParams& params) {
+  cv::Mat ink, text;
   cv::subtract(view.darkness, view.chroma, ink);  // saturates at zero
   ink.setTo(0, covered);
+  cv::dilate(find_text(ink_mask(ink, params)), text, cv::Mat());
+  ink.setTo(0, text);
   return ink;
+}
+
+struct Choice {
+  WallStrokes walls;
+  cv::Mat covered;  ///< CV_8UC1, 255 where signs and other figures hide the drawing
+};
+
+/// Without the outlines of filled figures, which show only against the walls' thickness.
+Choice without_blocks(const std::vector<InkStroke>& strokes, const cv::Mat& darkness, Choice first, double least_px,
+                      const LayoutParams& params) {
+  const cv::Mat solid = darkness >= params.solid_share * usual_black(darkness);
+  const cv::Mat blocks = find_blocks(solid, std::max(first.walls.thickness_px, first.walls.thickest_px));
+  std::vector<InkStroke> free;
+  for (const auto& s : strokes)
+    if (covered_share(s.axis, blocks) < 0.6) free.push_back(s);
+  if (free.size() == strokes.size()) return first;
+  cv::Mat covered;
+  cv::bitwise_or(first.covered, blocks, covered);
+  return {select_walls(free, darkness.size(), params, least_px), covered};
+}
+
+/// Walls in the ink. Where a plan draws them as two lines, the space between is filled and everything is traced once
+/// more: then thickness tells walls from leaves and treads, as in plans with solid walls, and blur does no harm.
+Choice choose_walls(const cv::Mat& darkness, const cv::Mat& covered, const LayoutParams& params,
+                    const Progress& progress) {
+  const auto strokes = trace_strokes(darkness, params);
+  progress.tell(0.7, "rooms");
+  Choice choice{select_walls(strokes, darkness.size(), params), covered};
+  if (choice.walls.walls.empty() || progress.cancelled()) return choice;
+  if (!choice.walls.hollow) return without_blocks(strokes, darkness, std::move(choice), 0, params);
+  const int reach = static_cast<int>(std::lround(1.1 * choice.walls.hollow_px)) | 1;
+  const double least_px = 1.6 * choice.walls.outline_px;
+  cv::Mat filled;
+  cv::morphologyEx(darkness, filled, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_RECT, {reach, reach}));
+  const auto solid = trace_strokes(filled, params);
+  Choice second{select_walls(solid, filled.size(), params, least_px), covered};
+  if (second.walls.walls.empty()) return choice;
+  second = without_blocks(solid, filled, std::move(second), least_px, params);
+  second.walls.hollow = true;
+  return second;
 }
 
 Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& options, const LayoutParams& params,
@@ -92,16 +136,17 @@ Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& 
   const Signs signs = find_signs(view, params);
   if (progress.cancelled()) return fail(Errc::kCancelled, "reading the plan was cancelled");
   progress.tell(0.35, "walls");
-  const auto strokes = trace_strokes(gray_ink(view, signs.covered), params);
+  const cv::Mat darkness = legible_ink(view, signs.covered, params);
+  const Choice choice = choose_walls(darkness, signs.covered, params, progress);
+  const WallStrokes& chosen = choice.walls;
   if (progress.cancelled()) return fail(Errc::kCancelled, "reading the plan was cancelled");
-  progress.tell(0.75, "rooms");
-  const WallStrokes chosen = select_walls(strokes, work.bgr.size(), params);
+  progress.tell(0.85, "rooms");
   if (chosen.walls.empty()) return fail(Errc::kDegenerate, "no walls were found in the picture");
 
   LayoutMap& map = reading.layout;
   map = build_wall_graph(chosen.walls, chosen.thickness_px, params);
   if (map.walls.empty()) return fail(Errc::kDegenerate, "no walls were found in the picture");
-  close_gaps(map, chosen.thin, signs.covered, chosen.thickness_px, params);
+  close_gaps(map, chosen.thin, choice.covered, chosen.thickness_px, params);
   map.signs = signs.signs;
   map.you_are_here_px = signs.you_are_here_px;
   rescale(map, work.scale);

@@ -7,6 +7,9 @@
 namespace smokemap {
 namespace {
 
+constexpr double kHollowShare = 0.3;  ///< of the long lines in pairs: from here on single lines are no walls
+constexpr double kClosed = 1.5;       ///< times an outline's thickness: solid, or two lines that blur made one
+
 double gap_between(const Segment2& one, const Segment2& two) {
   if (intersection(one, two)) return 0;
   return std::min({distance(one, two.a), distance(one, two.b), distance(two, one.a), distance(two, one.b)});
@@ -112,9 +115,11 @@ std::vector<InkStroke> pick(const std::vector<InkStroke>& strokes, const std::ve
   return picked;
 }
 
-double total_length(const std::vector<InkStroke>& strokes) {
-  return std::accumulate(strokes.begin(), strokes.end(), 0.0,
-                         [](double sum, const InkStroke& s) { return sum + s.length(); });
+/// Length of what is too long for letters, leaves and signs.
+double long_length(const std::vector<InkStroke>& strokes, double side_px) {
+  return std::accumulate(strokes.begin(), strokes.end(), 0.0, [&](double sum, const InkStroke& s) {
+    return sum + (s.length() > 0.025 * side_px ? s.length() : 0);
+  });
 }
 
 /// Short strokes that lie in the body of a longer one, a little askew: the rounded end of a wall, the foot of an arc.
@@ -155,11 +160,21 @@ bool could_be_a_wing(const std::vector<InkStroke>& walls, const Region& region, 
     thickness += walls[m].thickness_px * walls[m].length();
     length += walls[m].length();
   }
-  return longest > 0.05 * side_px &&
-         (region.junctions > static_cast<int>(region.members.size()) || thickness > 0.7 * thickness_px * length);
+  return longest > 0.05 * side_px && region.junctions > static_cast<int>(region.members.size()) &&
+         thickness > 0.6 * thickness_px * length;
 }
 
-/// The best region and what lies near it: corridors and window bands part a building into pieces.
+/// The two carry each other on: in line, with their ends facing each other.
+bool in_line(const InkStroke& one, const InkStroke& two, double reach_px) {
+  if (line_angle_between(one.axis.heading(), two.axis.heading()) > radians(4)) return false;
+  const double side = 0.5 * std::max(one.thickness_px, two.thickness_px) + 1;
+  const double low = std::min(one.thickness_px, two.thickness_px);
+  return std::abs(signed_line_distance(one.axis, two.axis.midpoint())) < side && 2 * side < 5 * low + 2 &&
+         gap_between(one.axis, two.axis) < reach_px;
+}
+
+/// The best region and what belongs to it: corridors, window bands and signs part a building into pieces. A piece
+/// belongs if it carries on one of its walls, lies among them, or is a wing with rooms of its own close by.
 std::vector<InkStroke> the_building(const std::vector<InkStroke>& walls, double thickness_px, double reach_px,
                                     double side_px) {
   const auto regions = connected_regions(walls, reach_px, side_px);
@@ -168,18 +183,26 @@ std::vector<InkStroke> the_building(const std::vector<InkStroke>& walls, double 
   std::vector<InkStroke> building = pick(walls, regions.front().members);
   adopted[0] = true;
   Point2 low = regions.front().low, high = regions.front().high;
+  const auto any_pair = [&](const Region& region, const auto& holds) {
+    return std::any_of(region.members.begin(), region.members.end(), [&](std::size_t m) {
+      return std::any_of(building.begin(), building.end(), [&](const InkStroke& b) { return holds(walls[m], b); });
+    });
+  };
   for (bool grown = true; grown;) {
     grown = false;
     for (std::size_t r = 1; r < regions.size(); ++r) {
-      if (adopted[r] || regions[r].length < 0.03 * side_px) continue;
+      if (adopted[r]) continue;
       const Point2 new_low = low.cwiseMin(regions[r].low), new_high = high.cwiseMax(regions[r].high);
       const bool grows = (new_high - new_low).prod() > 1.15 * (high - low).prod();
-      if (grows && !could_be_a_wing(walls, regions[r], thickness_px, side_px)) continue;
-      const bool near = std::any_of(regions[r].members.begin(), regions[r].members.end(), [&](std::size_t m) {
-        return std::any_of(building.begin(), building.end(),
-                           [&](const InkStroke& b) { return gap_between(walls[m].axis, b.axis) < reach_px; });
-      });
-      if (!near) continue;
+      const bool carries_on =
+          any_pair(regions[r], [&](const InkStroke& m, const InkStroke& b) { return in_line(m, b, 1.3 * reach_px); });
+      if (!carries_on) {
+        if (regions[r].length < 0.03 * side_px) continue;
+        if (grows && !could_be_a_wing(walls, regions[r], thickness_px, side_px)) continue;
+        if (!any_pair(regions[r],
+                      [&](const InkStroke& m, const InkStroke& b) { return gap_between(m.axis, b.axis) < reach_px; }))
+          continue;
+      }
       const auto more = pick(walls, regions[r].members);
       building.insert(building.end(), more.begin(), more.end());
       adopted[r] = grown = true;
@@ -200,22 +223,55 @@ std::vector<InkStroke> dark_enough(const std::vector<InkStroke>& strokes) {
   return kept;
 }
 
+bool half_of_a_pair(const InkStroke& s, const std::vector<InkStroke>& pairs) {
+  return std::any_of(pairs.begin(), pairs.end(), [&](const InkStroke& p) {
+    return line_angle_between(p.axis.heading(), s.axis.heading()) < radians(4) &&
+           distance(p.axis, s.axis.midpoint()) < 0.6 * p.thickness_px;
+  });
+}
+
+/// How a plan draws hollow walls.
+struct HollowStyle {
+  double share = 0;       ///< of the long lines that are outlines of hollow walls, or such walls closed by blur
+  double usual_px = 0;    ///< thickness of the walls
+  double widest_px = 0;   ///< of the thick ones
+  double outline_px = 0;  ///< of their two lines; thicker single lines are solid walls, or hollow ones closed by blur
+};
+
+HollowStyle hollow_style(const std::vector<InkStroke>& pairs, const std::vector<InkStroke>& lines, double side_px) {
+  HollowStyle style;
+  std::vector<std::pair<double, double>> spacing, outlines;
+  for (const auto& p : pairs) spacing.emplace_back(p.thickness_px, p.length());
+  for (const auto& s : lines)
+    if (half_of_a_pair(s, pairs)) outlines.emplace_back(s.thickness_px, s.length());
+  style.usual_px = weighted_quantile(spacing, 0.5);
+  style.widest_px = std::min(weighted_quantile(spacing, 0.9), 2.5 * style.usual_px);
+  style.outline_px = weighted_quantile(outlines, 0.5);
+  const double all = long_length(lines, side_px), paired = 2 * long_length(pairs, side_px);
+  if (all <= 0) return style;
+  style.share = paired / all;
+  if (style.share < 0.15) return style;
+  std::vector<InkStroke> closed;
+  for (const auto& s : lines)
+    if (s.thickness_px > kClosed * style.outline_px && s.thickness_px < 1.35 * style.usual_px &&
+        !half_of_a_pair(s, pairs))
+      closed.push_back(s);
+  style.share += long_length(closed, side_px) / all;
+  return style;
+}
+
 /// Where a plan draws some walls as two lines, those two lines become one.
 std::vector<InkStroke> with_pairs_joined(const std::vector<InkStroke>& strokes, const std::vector<InkStroke>& pairs) {
   std::vector<InkStroke> joined = pairs;
-  for (const auto& s : strokes) {
-    const bool half = std::any_of(pairs.begin(), pairs.end(), [&](const InkStroke& p) {
-      return line_angle_between(p.axis.heading(), s.axis.heading()) < radians(4) &&
-             distance(p.axis, s.axis.midpoint()) < 0.6 * p.thickness_px;
-    });
-    if (!half) joined.push_back(s);
-  }
+  for (const auto& s : strokes)
+    if (!half_of_a_pair(s, pairs)) joined.push_back(s);
   return joined;
 }
 
 }  // namespace
 
-WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture, const LayoutParams& params) {
+WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture, const LayoutParams& params,
+                         double least_px) {
   const double side = std::max(picture.width, picture.height);
   const double bridge = 0.02 * side;
   std::vector<InkStroke> candidates;
@@ -234,6 +290,7 @@ WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture
   out.thickness_px = weighted_quantile(by_area, 0.6);
   out.thin_limit_px = valley(plan, 0.7 * params.thin_ratio * out.thickness_px,
                              1.1 * params.thin_ratio * out.thickness_px, 0.9 * params.thin_ratio * out.thickness_px);
+  if (least_px > 0) out.thin_limit_px = least_px;
   std::vector<InkStroke> thick;
   for (const auto& s : candidates) {
     if (s.thickness_px < out.thin_limit_px)
@@ -245,20 +302,28 @@ WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture
 
   // Lines of the main class in pairs: nothing is thicker than the outline of a wall.
   const auto pairs = merge_collinear(pair_hollow(thick, 0.6 * params.max_wall_share * side), params.merge_angle_deg, 2);
-  const double paired = total_length(pairs) / std::max(1.0, total_length(thick));
-  out.hollow = paired > 0.35;
+  const HollowStyle style = hollow_style(pairs, thick, side);
+  out.hollow = least_px <= 0 && style.share > kHollowShare;
+  out.hollow_px = style.widest_px;
+  out.outline_px = style.outline_px;
   if (out.hollow) {
     std::vector<std::pair<double, double>> spacing;
-    for (const auto& p : pairs) spacing.emplace_back(p.thickness_px, p.length());
-    const double usual = weighted_quantile(spacing, 0.5);
-    for (const auto& p : pairs)
-      if (p.thickness_px < 2.5 * usual) out.walls.push_back(p);
+    for (const auto& p : pairs) {
+      spacing.emplace_back(p.thickness_px, p.length());
+      if (p.thickness_px < 2.5 * style.usual_px) out.walls.push_back(p);
+    }
+    for (const auto& s : thick)
+      if (s.thickness_px > kClosed * style.outline_px && !half_of_a_pair(s, pairs)) out.walls.push_back(s);
     out.thickness_px = weighted_quantile(spacing, 0.6);
     out.thin = candidates;
   } else {
     out.walls = without_ladders(dark_enough(thick), 0.015 * side);
-    if (paired > 0.06) out.walls = with_pairs_joined(out.walls, pairs);
+    if (style.share > 0.12) out.walls = with_pairs_joined(out.walls, pairs);
   }
+  std::vector<std::pair<double, double>> long_ones;
+  for (const auto& s : out.walls)
+    if (s.length() >= 5 * s.thickness_px) long_ones.emplace_back(s.thickness_px, s.length() * s.thickness_px);
+  out.thickest_px = weighted_quantile(long_ones, 0.9);
   out.walls = the_building(out.walls, out.thickness_px, params.max_opening_share * side, side);
   return out;
 }

@@ -13,15 +13,20 @@ struct WallStrokes {
   std::vector<InkStroke> walls;
   std::vector<InkStroke> thin;  ///< of the plan's region, too thin for its walls: leaves, windows, treads, furniture
   double thickness_px = 0;      ///< of the thickest usual walls
+  double thickest_px = 0;       ///< of the thickest long walls
   double thin_limit_px = 0;     ///< below is not wall
   bool hollow = false;          ///< the plan draws its walls as two thin lines
+  double hollow_px = 0;         ///< outer thickness of the walls drawn as two lines, 0 = none
+  double outline_px = 0;        ///< thickness of those lines
   int regions = 0;              ///< parts of the sheet that could be a plan; more than one deserves a warning
 };
 
 /// Chooses the plan among the drawings on the sheet (most junctions and wall length) and its thickness classes, which
 /// it reads from the histogram of thicknesses: the emptiest place below the main class parts walls from thin lines.
 /// Where no class stands out, pairs of parallel thin lines are the walls (hollow), else the single lines themselves.
-WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture, const LayoutParams& params);
+/// @param least_px  walls are at least so thick; 0 = find out
+WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture, const LayoutParams& params,
+                         double least_px = 0);
 
 /// Pairs of parallel thin lines as one stroke each, as thick as both together. A line with like neighbours on both
 /// sides (stairs, hatching, shelves) makes no pair.

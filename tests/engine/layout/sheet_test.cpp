@@ -28,7 +28,43 @@ cv::Mat photograph(const testing::DrawnPlan& plan) {
 TEST(Sheet, IsProposedWhereItHangs) {
   const auto proposal = propose_sheet(photograph(testing::draw_office()));
   EXPECT_GT(proposal.confidence, 0);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_LT((proposal.corners_px[i] - kCorners[i]).norm(), 15) << i;
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_LT((proposal.corners_px[i] - kCorners[i]).norm(), 4) << i;
+}
+
+double worst_corner(const SheetProposal& proposal) {
+  double worst = 0;
+  for (std::size_t i = 0; i < 4; ++i) worst = std::max(worst, (proposal.corners_px[i] - kCorners[i]).norm());
+  return worst / (kCorners[1] - kCorners[0]).norm();
+}
+
+// Regression: a coloured band along the top was left outside the sheet.
+TEST(Sheet, HasItsHeaderInside) {
+  auto plan = testing::draw_office();
+  cv::rectangle(plan.picture, {0, 0, plan.picture.cols, 80}, cv::Scalar(80, 132, 0), cv::FILLED);
+  EXPECT_LT(worst_corner(propose_sheet(photograph(plan))), 0.005);
+}
+
+TEST(Sheet, EndsWherePaperMeetsThePictureFrame) {
+  const auto plan = testing::draw_office();
+  cv::Mat framed;
+  cv::copyMakeBorder(plan.picture, framed, 40, 40, 40, 40, cv::BORDER_CONSTANT, cv::Scalar(60, 65, 70));
+  const auto w = static_cast<float>(plan.picture.cols - 1), h = static_cast<float>(plan.picture.rows - 1);
+  const cv::Point2f from[4] = {{40, 40}, {40 + w, 40}, {40 + w, 40 + h}, {40, 40 + h}};
+  cv::Point2f to[4];
+  for (std::size_t i = 0; i < 4; ++i)
+    to[i] = {static_cast<float>(kCorners[i].x()), static_cast<float>(kCorners[i].y())};
+  cv::Mat photo(1080, 1440, CV_8UC3, cv::Scalar(150, 170, 190));
+  cv::warpPerspective(framed, photo, cv::getPerspectiveTransform(from, to), photo.size(), cv::INTER_AREA,
+                      cv::BORDER_TRANSPARENT);
+  EXPECT_LT(worst_corner(propose_sheet(photo)), 0.005);
+}
+
+// Regression: the outline of the plan itself, or a tinted hall, was taken for the sheet.
+TEST(Sheet, IsNotWhatIsPrintedOnIt) {
+  auto plan = testing::draw_office();
+  cv::rectangle(plan.picture, cv::Point(206, 206), cv::Point(1394, 794), cv::Scalar(205, 235, 205), cv::FILLED);
+  EXPECT_EQ(propose_sheet(plan.picture).confidence, 0);
+  EXPECT_EQ(propose_sheet(testing::draw_office().picture).confidence, 0);
 }
 
 TEST(Sheet, IsTheWholePictureWhenNothingStandsOut) {
