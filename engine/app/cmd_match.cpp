@@ -18,7 +18,7 @@ namespace smokemap::app {
 namespace {
 
 struct MatchArguments {
-  std::string sketch, map, pins, points, output, preview;
+  std::string sketch, map, pins, points, output, preview, method = "structure";
   bool mirrored = false;
 };
 
@@ -143,6 +143,8 @@ Result<Ok> match_pictures(const MatchArguments& arguments) {
   if (!b) return b.error();
   MatchParams params;
   params.allow_mirror = arguments.mirrored;
+  if (arguments.method == "ursim") params.method = MatchMethod::kUrsim;
+  if (arguments.method == "voronoi") params.method = MatchMethod::kVoronoi;
   const Result<Matching> matching = match(*a, *b, *pins, {}, params);
   if (!matching) return matching.error();
   const PointTransfer transfer(*a, *b, *matching, *pins);
@@ -175,6 +177,8 @@ void add_match(CLI::App& app, Outcome& outcome) {
   command->add_option("--pins", arguments->pins, "pins.json: what a person says is the same place");
   command->add_option("--points", arguments->points, "points.json: points of the first map to carry over");
   command->add_option("--preview", arguments->preview, "PNG with both maps and lines between partners");
+  command->add_option("--method", arguments->method, "structure (default), or as published: ursim, voronoi")
+      ->check(CLI::IsMember({"structure", "ursim", "voronoi"}));
   command->add_flag("--mirrored", arguments->mirrored, "the first map may be a mirror image");
   command->callback([arguments, &outcome] {
     const Result<Ok> done = match_pictures(*arguments);

@@ -5,6 +5,7 @@
 // person.
 #include "matching/match.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -13,7 +14,9 @@
 #include <utility>
 
 #include "core/check.hpp"
+#include "matching/confidence.hpp"
 #include "matching/hypotheses.hpp"
+#include "matching/published.hpp"
 #include "matching/region_pairs.hpp"
 
 namespace smokemap {
@@ -22,7 +25,8 @@ namespace {
 constexpr double kPinReach_px = 10;
 constexpr double kClearMargin = 0.25;  ///< from here on the runner-up does not matter
 constexpr double kDoubtfulMargin = 0.08;
-constexpr double kDoubtfulLikeness = 0.55;
+constexpr double kDoubtfulConfidence = 0.6;
+constexpr double kPinned = 0.97;  ///< a tap may miss the room that was meant
 
 std::optional<int> region_near(const Segmentation& map, const Point2& p_px) {
   const int reach = static_cast<int>(kPinReach_px);
@@ -103,13 +107,31 @@ std::optional<int> most_telling_region(const Segmentation& a, const Matching& ma
 }
 
 std::vector<RegionPair> pairs_of(const Hypothesis& hypothesis, const PairRules& rules) {
-  const StructureMatch& structure = hypothesis.structure;
-  std::vector<RegionPair> pairs = joined_pairs(structure.partner, hypothesis.scores, rules.forbidden);
-  for (RegionPair& pair : pairs) {
-    const int i = pair.label_a - 1, j = pair.label_b - 1;
-    pair.confidence *= std::clamp(0.5 * structure.certainty(i, j) + 0.25 * (1 + structure.support(i)), 0.0, 1.0);
+  return joined_pairs(hypothesis.structure.partner, hypothesis.scores, rules.forbidden);
+}
+
+void keep_verdicts(const std::vector<RegionPair>& verdicts, Matching& matching) {
+  for (const RegionPair& verdict : verdicts) {
+    if (verdict.verdict == Verdict::kRejected)
+      matching.pairs.push_back({verdict.label_a, verdict.label_b, 0, Verdict::kRejected});
+    for (RegionPair& pair : matching.pairs)
+      if (verdict.verdict == Verdict::kConfirmed && pair.label_a == verdict.label_a && pair.label_b == verdict.label_b)
+        pair.confidence = 1, pair.verdict = Verdict::kConfirmed;
   }
-  return pairs;
+  std::stable_sort(matching.pairs.begin(), matching.pairs.end(),
+                   [](const RegionPair& one, const RegionPair& two) { return one.confidence < two.confidence; });
+}
+
+/// Mean confidence, every region of a by the root of its area; regions without partner count as doubt.
+double overall_confidence(const Segmentation& a, const std::vector<RegionPair>& pairs) {
+  double sum = 0, total = 0;
+  for (const Region& region : a.regions) {
+    double best = 0;
+    for (const RegionPair& pair : pairs)
+      if (pair.label_a == region.label) best = std::max(best, pair.confidence);
+    sum += best * std::sqrt(region.area_px), total += std::sqrt(region.area_px);
+  }
+  return sum / total;
 }
 
 void finish(const Segmentation& a, const PairRules& rules, const std::vector<RegionPair>& verdicts,
@@ -123,22 +145,52 @@ void finish(const Segmentation& a, const PairRules& rules, const std::vector<Reg
       matching.margin = std::clamp((all.front().score - all[i].score) / kClearMargin, 0.0, 1.0);
       break;
     }
-  const double trust = 0.6 + 0.4 * matching.margin;
   for (RegionPair& pair : matching.pairs) {
-    const int i = pair.label_a - 1, j = pair.label_b - 1;
-    pair.confidence = rules.forced(i, j) ? 0.97 : std::clamp(trust * pair.confidence, 0.02, 0.95);
+    const bool bound = rules.forced(pair.label_a - 1, pair.label_b - 1) != 0;
+    pair.confidence = bound ? kPinned : confidence_of(weigh_pair(pair, all));
   }
-  for (const RegionPair& verdict : verdicts) {
-    if (verdict.verdict == Verdict::kRejected)
-      matching.pairs.push_back({verdict.label_a, verdict.label_b, 0, Verdict::kRejected});
-    for (RegionPair& pair : matching.pairs)
-      if (verdict.verdict == Verdict::kConfirmed && pair.label_a == verdict.label_a && pair.label_b == verdict.label_b)
-        pair.confidence = 1, pair.verdict = Verdict::kConfirmed;
-  }
-  std::stable_sort(matching.pairs.begin(), matching.pairs.end(),
-                   [](const RegionPair& one, const RegionPair& two) { return one.confidence < two.confidence; });
-  matching.doubtful = matching.margin < kDoubtfulMargin / kClearMargin || all.front().warp.likeness < kDoubtfulLikeness;
+  for (RegionPair& pair : matching.runner_up)
+    pair.confidence = (1 - matching.margin) * 0.5;  // it is right at most when the best is wrong
+  matching.doubtful =
+      matching.margin < kDoubtfulMargin / kClearMargin || overall_confidence(a, matching.pairs) < kDoubtfulConfidence;
+  keep_verdicts(verdicts, matching);
   matching.next_pin_label_a = most_telling_region(a, matching);
+}
+
+/// Turn (no mirror image) that best lays the middles of partners over each other.
+Eigen::Matrix2d turn_of_pairs(const Segmentation& a, const Segmentation& b, const std::vector<RegionPair>& pairs) {
+  Point2 mean_a = Point2::Zero(), mean_b = Point2::Zero();
+  const auto middles = [&](const RegionPair& pair) {
+    return std::pair(a.regions[static_cast<size_t>(pair.label_a - 1)].centroid_px,
+                     b.regions[static_cast<size_t>(pair.label_b - 1)].centroid_px);
+  };
+  for (const RegionPair& pair : pairs) mean_a += middles(pair).first, mean_b += middles(pair).second;
+  const double count = static_cast<double>(std::max<size_t>(1, pairs.size()));
+  double along = 0, across = 0;
+  for (const RegionPair& pair : pairs) {
+    const Point2 from = middles(pair).first - mean_a / count, to = middles(pair).second - mean_b / count;
+    along += from.dot(to), across += from.x() * to.y() - from.y() * to.x();
+  }
+  return Eigen::Rotation2Dd(std::atan2(across, along)).toRotationMatrix();
+}
+
+/// A published method; what people bound is put over what it says.
+Matching match_published(const Segmentation& a, const Segmentation& b, const PairRules& rules,
+                         const std::vector<RegionPair>& verdicts, MatchMethod method) {
+  Matching matching;
+  for (const RegionPair& pair : method == MatchMethod::kUrsim ? match_ursim(a, b) : match_voronoi(a, b)) {
+    const int i = pair.label_a - 1, j = pair.label_b - 1;
+    const bool is_spoken_for = rules.forced.row(i).any() || rules.forced.col(j).any() || rules.forbidden(i, j);
+    if (!is_spoken_for) matching.pairs.push_back(pair);
+  }
+  for (int i = 0; i < rules.forced.rows(); ++i)
+    for (int j = 0; j < rules.forced.cols(); ++j)
+      if (rules.forced(i, j)) matching.pairs.push_back({i + 1, j + 1, kPinned, Verdict::kProposed});
+  matching.doubtful = true;
+  matching.turn_b_a = turn_of_pairs(a, b, matching.pairs);
+  matching.next_pin_label_a = most_telling_region(a, matching);
+  keep_verdicts(verdicts, matching);
+  return matching;
 }
 
 }  // namespace
@@ -155,6 +207,7 @@ Result<Matching> match(const Segmentation& a, const Segmentation& b, const std::
                 std::string("the ") + (a.regions.empty() ? "first" : "second") + " map has no region to match");
   const Result<PairRules> rules = make_rules(a, b, pins, verdicts);
   if (!rules) return rules.error();
+  if (params.method != MatchMethod::kStructure) return match_published(a, b, *rules, verdicts, params.method);
   const std::vector<Hypothesis> all = find_hypotheses(a, b, pins_and_confirmed(a, b, pins, verdicts), *rules, params);
   Matching matching;
   finish(a, *rules, verdicts, all, matching);

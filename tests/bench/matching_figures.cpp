@@ -17,6 +17,7 @@
 #include "core/random.hpp"
 #include "matching/transfer.hpp"
 #include "segmentation/segment.hpp"
+#include "tests/support/plan_pictures.hpp"
 
 namespace smokemap::bench {
 namespace {
@@ -308,6 +309,39 @@ Result<std::vector<JudgedPair>> read_judged_pairs(const std::string& folder, con
                                group["metric_labels"].get<std::vector<int>>()});
       pairs.push_back(std::move(pair));
     }
+  }
+  return pairs;
+}
+
+std::vector<JudgedPair> generated_pairs(int count, std::uint64_t first_seed, const SegmentationParams& params) {
+  std::vector<JudgedPair> pairs;
+  for (std::uint64_t seed = first_seed; static_cast<int>(pairs.size()) < count; ++seed) {
+    std::mt19937_64 random(seed);
+    const test::PlanPicture plan =
+        seed % 2 ? test::hall_plan(random) : test::office_plan(random, 2 + static_cast<int>(uniform_index(random, 4)));
+    test::SketchHabits habits;
+    habits.quarter_turns = static_cast<int>(uniform_index(random, 4));
+    habits.scale = uniform(random, 0.7, 1.6), habits.stretch = uniform(random, 0.75, 1.3);
+    habits.tilt_rad = normal(random, 0.05), habits.bend_px = uniform(random, 2, 8);
+    habits.rooms_left_out = static_cast<int>(uniform_index(random, 3));
+    habits.doors_forgotten = static_cast<int>(uniform_index(random, 3));
+    habits.uneven = uniform(random, 0, 0.5);
+    const test::PlanSketch sketch = test::sketch_of(plan, habits, random);
+    auto a = segment(sketch.picture.free_space, params), b = segment(plan.free_space, params);
+    if (!a || !b) continue;
+    JudgedPair pair{"generated",   std::to_string(seed), "truth",    std::move(*a),
+                    std::move(*b), sketch.picture.rooms, plan.rooms, {}};
+    for (int room = 1; room <= static_cast<int>(plan.boxes.size()); ++room) {
+      const std::vector<Point2> drawn = pixels_of(pair.truth_a, {room});
+      if (drawn.size() < 30) continue;
+      const cv::Rect box = plan.boxes[static_cast<size_t>(room - 1)];
+      const Point2 middle(box.x + box.width / 2, box.y + box.height / 2);
+      const Point2 click = *std::min_element(drawn.begin(), drawn.end(), [&](const Point2& one, const Point2& two) {
+        return (sketch.on_plan(one) - middle).squaredNorm() < (sketch.on_plan(two) - middle).squaredNorm();
+      });
+      pair.groups.push_back({{click}, {middle}, {room}, {room}});
+    }
+    pairs.push_back(std::move(pair));
   }
   return pairs;
 }

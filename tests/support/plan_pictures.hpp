@@ -20,6 +20,7 @@ struct PlanPicture {
   cv::Mat free_space;           ///< CV_8UC1, 255 = free
   cv::Mat rooms;                ///< CV_16UC1, 0 = wall, 1 = corridor, then rooms
   std::vector<cv::Rect> boxes;  ///< of room 1, 2, ...
+  std::vector<cv::Rect> doors;
 };
 
 /// A corridor with rooms of different widths and depths on both sides, each behind a door.
@@ -42,10 +43,54 @@ inline PlanPicture office_plan(std::mt19937_64& random, int rooms_a_side = 4) {
     right = std::max(right, x - wall);
   }
   boxes[0] = cv::Rect(margin, top, right - margin, corridor);
-  PlanPicture plan{cv::Mat(330, right + margin, CV_8UC1, cv::Scalar(0)), {}, boxes};
+  PlanPicture plan{cv::Mat(330, right + margin, CV_8UC1, cv::Scalar(0)), {}, boxes, doors};
   plan.rooms = cv::Mat(plan.free_space.size(), CV_16UC1, cv::Scalar(0));
   for (const cv::Rect& opening : doors) plan.rooms(opening).setTo(1);
   for (size_t i = 0; i < boxes.size(); ++i) plan.rooms(boxes[i]).setTo(static_cast<int>(i) + 1);
+  plan.free_space.setTo(255, plan.rooms != 0);
+  return plan;
+}
+
+/// A hall with rooms on all four sides, some with a closet behind.
+inline PlanPicture hall_plan(std::mt19937_64& random) {
+  const int wall = 4, margin = 20, deep = 110, door = 12;
+  const int width = static_cast<int>(uniform(random, 160, 280)), height = static_cast<int>(uniform(random, 110, 200));
+  PlanPicture plan;
+  plan.boxes.emplace_back(margin + deep, margin + deep, width, height);
+  const cv::Rect hall = plan.boxes.front();
+  const auto add = [&](const cv::Rect& box, const cv::Rect& opening) {
+    plan.boxes.push_back(box);
+    plan.doors.push_back(opening);
+  };
+  for (int side = 0; side < 4; ++side) {
+    const bool level = side % 2 == 0;  // rooms above and below; else left and right
+    int at = level ? hall.x : hall.y;
+    const int end = at + (level ? width : height);
+    while (end - at > 40) {
+      const int along = std::min(end - at, static_cast<int>(uniform(random, 35, 100)));
+      const int depth = static_cast<int>(uniform(random, 25, 70));
+      const int gap = at + 4 + static_cast<int>(uniform(random, 0, along - door - 8));
+      const int low = side == 0   ? hall.y - wall - depth
+                      : side == 1 ? hall.x + width + wall
+                      : side == 2 ? hall.y + height + wall
+                                  : hall.x - wall - depth;
+      const int jamb = side == 0 || side == 3 ? low + depth : low - wall;
+      if (uniform01(random) < 0.75) {
+        add(level ? cv::Rect(at, low, along, depth) : cv::Rect(low, at, depth, along),
+            level ? cv::Rect(gap, jamb, door, wall) : cv::Rect(jamb, gap, wall, door));
+        const int behind = side == 0 || side == 3 ? low - wall - 22 : low + depth + wall;
+        const int jamb_behind = side == 0 || side == 3 ? low - wall : low + depth;
+        if (uniform01(random) < 0.35)
+          add(level ? cv::Rect(at, behind, along / 2, 22) : cv::Rect(behind, at, 22, along / 2),
+              level ? cv::Rect(at + 3, jamb_behind, door, wall) : cv::Rect(jamb_behind, at + 3, wall, door));
+      }
+      at += along + wall;
+    }
+  }
+  plan.free_space = cv::Mat(height + 2 * (margin + deep), width + 2 * (margin + deep), CV_8UC1, cv::Scalar(0));
+  plan.rooms = cv::Mat(plan.free_space.size(), CV_16UC1, cv::Scalar(0));
+  for (const cv::Rect& opening : plan.doors) plan.rooms(opening).setTo(1);
+  for (size_t i = 0; i < plan.boxes.size(); ++i) plan.rooms(plan.boxes[i]).setTo(static_cast<int>(i) + 1);
   plan.free_space.setTo(255, plan.rooms != 0);
   return plan;
 }
@@ -58,6 +103,9 @@ struct SketchHabits {
   double bend_px = 6;    ///< how far walls wander
   double tilt_rad = 0.03;
   int rooms_left_out = 0;
+  int doors_forgotten = 0;
+  double uneven = 0;  ///< standard deviation of the logarithm of the scale, drawn anew every 60 px: long corridors get
+                      ///< short, small rooms large
 };
 
 /// The drawing, the true rooms in it, and where every point of it lies on the plan.
@@ -73,6 +121,30 @@ struct PlanSketch {
   }
 };
 
+/// Where a drawn length ends when the scale changes on the way: monotone, about the identity.
+class UnevenScale {
+ public:
+  UnevenScale(double sigma, int length, std::mt19937_64& random) {
+    double at = 0;
+    for (int knot = 0; knot <= length / kStep + 2; ++knot) {
+      ends_.push_back(at);
+      at += kStep * (sigma > 0 ? std::exp(normal(random, sigma)) : 1.0);
+    }
+    middle_ = 0.5 * (length - at * length / (kStep * static_cast<double>(ends_.size())));
+  }
+  double operator()(double x) const {
+    const double place = std::clamp(x / kStep, 0.0, static_cast<double>(ends_.size()) - 1.001);
+    const auto knot = static_cast<size_t>(place);
+    return middle_ + ends_[knot] + (place - static_cast<double>(knot)) * (ends_[knot + 1] - ends_[knot]) +
+           (x < 0 ? x : 0);
+  }
+
+ private:
+  static constexpr int kStep = 60;
+  std::vector<double> ends_;
+  double middle_ = 0;
+};
+
 inline PlanSketch sketch_of(const PlanPicture& plan, const SketchHabits& habits, std::mt19937_64& random) {
   PlanSketch sketch;
   cv::Mat rooms = plan.rooms.clone();
@@ -80,7 +152,11 @@ inline PlanSketch sketch_of(const PlanPicture& plan, const SketchHabits& habits,
   while (static_cast<int>(sketch.left_out.size()) < habits.rooms_left_out)
     sketch.left_out.insert(2 + static_cast<int>(uniform_index(random, count - 1)));
   for (const int room : sketch.left_out) rooms.setTo(0, plan.rooms == room);
-  const double side = 1.25 * habits.scale * std::max(rooms.cols, rooms.rows) * std::max(1.0, habits.stretch);
+  for (int i = 0; i < habits.doors_forgotten && !plan.doors.empty(); ++i)
+    rooms(plan.doors[uniform_index(random, plan.doors.size())]).setTo(0);
+  const UnevenScale uneven_x(habits.uneven, rooms.cols, random), uneven_y(habits.uneven, rooms.rows, random);
+  const double side = (habits.uneven > 0 ? 1.6 : 1.25) * habits.scale * std::max(rooms.cols, rooms.rows) *
+                      std::max(1.0, habits.stretch);
   const cv::Size size(static_cast<int>(side), static_cast<int>(side));
   const double angle = habits.tilt_rad + habits.quarter_turns * std::numbers::pi / 2;
   const double phase_x = uniform(random, 0, 6), phase_y = uniform(random, 0, 6);
@@ -90,8 +166,9 @@ inline PlanSketch sketch_of(const PlanPicture& plan, const SketchHabits& habits,
       const double dx = x - 0.5 * size.width, dy = y - 0.5 * size.height;
       const double u = (std::cos(angle) * dx - std::sin(angle) * dy) / (habits.scale * habits.stretch);
       const double v = (std::sin(angle) * dx + std::cos(angle) * dy) / habits.scale;
-      const double px = 0.5 * rooms.cols + u + habits.bend_px * std::sin(v / 55 + phase_x);
-      const double py = 0.5 * rooms.rows + v + habits.bend_px * std::sin(u / 70 + phase_y);
+      double px = 0.5 * rooms.cols + u + habits.bend_px * std::sin(v / 55 + phase_x);
+      double py = 0.5 * rooms.rows + v + habits.bend_px * std::sin(u / 70 + phase_y);
+      if (habits.uneven > 0) px = uneven_x(px), py = uneven_y(py);
       sketch.to_plan.at<cv::Vec2f>(y, x) = {static_cast<float>(px), static_cast<float>(py)};
     }
   cv::remap(rooms, sketch.picture.rooms, sketch.to_plan, cv::noArray(), cv::INTER_NEAREST, cv::BORDER_CONSTANT, 0);

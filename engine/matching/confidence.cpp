@@ -1,0 +1,39 @@
+#include "matching/confidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace smokemap {
+namespace {
+
+constexpr double kScoreSpread = 0.12;  ///< hypotheses worse by this count a third
+constexpr double kCaution = 1.0;       ///< logit: people's habits are wilder than the generator's
+constexpr double kMostSure = 0.97, kLeastSure = 0.02;
+
+}  // namespace
+
+PairEvidence weigh_pair(const RegionPair& pair, const std::vector<Hypothesis>& all) {
+  const int i = pair.label_a - 1, j = pair.label_b - 1;
+  const Hypothesis& best = all.front();
+  PairEvidence evidence;
+  evidence.certainty = best.structure.certainty(i, j);
+  evidence.likeness = best.scores.likeness(i, j);
+  evidence.is_partner = best.structure.partner[static_cast<size_t>(i)] == j;
+  double agreeing = 0, total = 0;
+  for (const Hypothesis& hypothesis : all) {
+    const double weight = std::exp((hypothesis.score - best.score) / kScoreSpread);
+    total += weight;
+    const bool agrees = hypothesis.structure.partner[static_cast<size_t>(i)] == j ||
+                        (evidence.is_partner == 0 && hypothesis.scores.share_of_b(i, j) > 0.5);
+    agreeing += agrees ? weight : 0;
+  }
+  evidence.agreement = agreeing / total;
+  return evidence;
+}
+
+double confidence_of(const PairEvidence& e) {
+  const double logit = -2.3 - kCaution + 1.1 * e.certainty + 1.7 * e.likeness + 1.6 * e.agreement + 1.6 * e.is_partner;
+  return std::clamp(1 / (1 + std::exp(-logit)), kLeastSure, kMostSure);
+}
+
+}  // namespace smokemap
