@@ -1,6 +1,6 @@
 import { deflateRawSync } from 'node:zlib';
 import { describe, expect, test } from 'vitest';
-import { matchRows, levelOf, relink, unrelink } from '../src/model/matches';
+import { matchRows, levelOf, regionAt, relink, unrelink } from '../src/model/matches';
 import { isReflected, withPending } from '../src/model/pending';
 import { addWall, countWalls, documentOf, draftFrom, toggleWall, wallAt, withScale } from '../src/model/plan_draft';
 import { formatAge, formatMetres, linkWord, localisationQuality, sortGoals } from '../src/model/status';
@@ -211,6 +211,11 @@ describe('matches', () => {
       { sketch: 1, plan: 5, verdict: 'confirmed' },
     ]);
     expect(relink(rows, 1, 4)).toEqual([{ sketch: 1, plan: 4, verdict: 'confirmed' }]);
+  });
+  test('a tap where outlines overlap means the smaller room, and nothing beside all of them', () => {
+    const square = (x: number, side: number) => ({ outline: [[x, 0], [x + side, 0], [x + side, side], [x, side]] as const });
+    const regions = new Map([['1', square(0, 100)], ['2', square(10, 20)], ['3', square(90, 30)]]);
+    expect([[15, 5], [50, 50], [95, 5], [119, 29], [300, 0]].map((p) => regionAt(regions, p as [number, number]))).toEqual([2, 1, 3, 3, undefined]);
   });
   test('and can be taken back', () => {
     expect(unrelink(rows, 1, 5)[0]).toEqual({ sketch: 1, plan: 5, verdict: 'proposed' });

@@ -1,4 +1,6 @@
 /** Which room of the sketch is which room of the plan, as people see it: one colour per pair, worst first. */
+import type { Xy } from '../geometry/points';
+import { contains, signedArea } from '../geometry/polygon';
 import type { Pair } from '../wire/parts';
 import type { World } from './world';
 
@@ -28,6 +30,17 @@ export function matchRows(world: World): MatchRow[] {
         a.confidence - b.confidence ||
         a.sketch - b.sketch,
     );
+}
+
+/** The room at a place. Outlines of neighbours may overlap: the smaller one is meant, the larger can be tapped elsewhere. */
+export function regionAt(regions: ReadonlyMap<string, { readonly outline: readonly Xy[] }>, p: Xy): number | undefined {
+  let best: number | undefined;
+  let least = Infinity;
+  for (const [id, { outline }] of regions) {
+    const area = Math.abs(signedArea(outline));
+    if (area < least && contains(outline, p)) [best, least] = [Number(id), area];
+  }
+  return best;
 }
 
 export interface Judgement {
