@@ -41,19 +41,28 @@ Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path, s
   }
 }
 
+namespace {
+
+bool put_bytes(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  return static_cast<bool>(file);
+}
+
+}  // namespace
+
 Result<Ok> write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
   std::filesystem::path beside = path;
   beside += ".part";
   std::error_code error;
-  {
-    std::ofstream file(beside, std::ios::binary | std::ios::trunc);
-    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file) {
-      std::filesystem::remove(beside, error);
-      return fail(Errc::kIo, "cannot write " + path.string());
-    }
+  // A pipe or a device is written to; renaming would put a file in its place.
+  const bool is_special = std::filesystem::exists(path, error) && std::filesystem::is_other(path, error);
+  if (!put_bytes(is_special ? path : beside, bytes)) {
+    if (!is_special) std::filesystem::remove(beside, error);
+    return fail(Errc::kIo, "cannot write " + path.string());
   }
+  if (is_special) return Ok{};
   std::filesystem::rename(beside, path, error);
   if (!error) return Ok{};
   std::error_code ignored;
