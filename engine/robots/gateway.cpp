@@ -8,6 +8,7 @@
 
 #include "core/check.hpp"
 #include "robots/dds_domain.hpp"
+#include "robots/robot_commander.hpp"
 #include "robots/robot_intake.hpp"
 #include "robots/ros_convert.hpp"
 #include "robots/ros_names.hpp"
@@ -63,8 +64,9 @@ class RobotGateway::Impl {
     for (const auto& [id, shown] : shown_) {
       links.push_back(shown.link);
       links.back().link = link_state(shown.link.last_heard, clock_->now(), params_.link);
-      links.back().takes_velocity = static_cast<bool>(shown.velocity.writer);
-      links.back().takes_goals = static_cast<bool>(shown.goal.writer);
+      links.back().takes_velocity = shown.commander.takes_velocity();
+      links.back().takes_goals = shown.commander.takes_goals();
+      links.back().navigates = shown.commander.navigates();
     }
     return links;
   }
@@ -81,25 +83,29 @@ class RobotGateway::Impl {
       return fail(Errc::kInvalidArgument, "a velocity that is not finite");
     const std::lock_guard lock(mutex_);
     const auto shown = shown_.find(robot);
-    if (shown == shown_.end() || !shown->second.velocity.writer)
-      return fail(Errc::kNotFound, "nobody takes velocities for " + robot);
-    const CommandWriter& velocity = shown->second.velocity;
-    const bool sent = velocity.stamped
-                          ? write_twist_stamped(velocity.writer.get(), speed_mps, turn_rate_radps, clock_->now())
-                          : write_twist(velocity.writer.get(), speed_mps, turn_rate_radps);
-    if (!sent) return fail(Errc::kIo, "the network did not take the velocity for " + robot);
-    return Ok{};
+    if (shown == shown_.end()) return fail(Errc::kNotFound, "there is no robot " + robot);
+    return shown->second.commander.drive(speed_mps, turn_rate_radps, clock_->now());
   }
 
-  Result<Ok> send_goal(const std::string& robot, const Pose2& T_frame_goal, const std::string& frame) {
+  Result<SentGoal> send_goal(const std::string& robot, const Pose2& T_frame_goal, const std::string& frame) {
     if (!T_frame_goal.is_finite()) return fail(Errc::kInvalidArgument, "a goal that is not finite");
     const std::lock_guard lock(mutex_);
     const auto shown = shown_.find(robot);
-    if (shown == shown_.end() || !shown->second.goal.writer)
-      return fail(Errc::kNotFound, "nobody takes goals for " + robot);
-    if (!write_goal(shown->second.goal.writer.get(), T_frame_goal, frame, clock_->now()))
-      return fail(Errc::kIo, "the network did not take the goal for " + robot);
-    return Ok{};
+    if (shown == shown_.end()) return fail(Errc::kNotFound, "there is no robot " + robot);
+    const std::uint64_t number = ++goals_;
+    const auto followed = shown->second.commander.send_goal(number, {T_frame_goal, frame}, clock_->now());
+    if (!followed) return followed.error();
+    return SentGoal{number, *followed};
+  }
+
+  Result<Ok> stop(const std::string& robot) {
+    const std::lock_guard lock(mutex_);
+    const auto shown = shown_.find(robot);
+    if (shown == shown_.end()) return fail(Errc::kNotFound, "there is no robot " + robot);
+    const auto called_off = shown->second.commander.cancel_goals();
+    const auto standing = shown->second.commander.drive(0, 0, clock_->now());
+    if (!called_off) return called_off;
+    return shown->second.commander.navigates() ? Result<Ok>(Ok{}) : standing;
   }
 
  private:
@@ -115,21 +121,14 @@ class RobotGateway::Impl {
     Stamp last_heard = 0;
   };
 
-  /// What drives a robot: exists while somebody subscribes.
-  struct CommandWriter {
-    std::string topic_name;
-    bool stamped = false;
-    DdsEntity topic;
-    DdsEntity writer;
-  };
-
   /// Touched by the gateway's thread only.
   struct Robot {
     Robot(const std::string& id, Impl& gateway)
         : intake(id, gateway.params_, gateway.callbacks_,
                  [&gateway, id](const std::string& what, const std::string& text) { gateway.raise(id, what, text); }) {}
     RobotIntake intake;
-    RobotTopics topics;
+    RobotTopics told;                            ///< by discovery
+    RobotTopics topics;                          ///< as used
     std::map<std::string, TopicReader> readers;  ///< by topic name
     std::map<std::string, Source> sources;       ///< topic -> the one participant that is listened to
     std::map<dds_instance_handle_t, DdsGuid> writer_participants;
@@ -137,7 +136,7 @@ class RobotGateway::Impl {
   /// What other threads may see and use, under the mutex.
   struct Shown {
     RobotLink link;
-    CommandWriter velocity, goal;
+    RobotCommander commander;
   };
 
   // Discovery ------------------------------------------------------------------------------------------------------
@@ -170,8 +169,11 @@ class RobotGateway::Impl {
   void adopt(const RobotTopics& topics) {
     auto& robot = robots_[topics.robot];
     if (!robot) robot = std::make_unique<Robot>(topics.robot, *this);
-    if (robot->topics == topics) return;
+    if (robot->told == topics) return;
+    robot->told = topics;
     robot->topics = topics;
+    if (params_.services != ServiceFormat::kByVendor)
+      robot->topics.headed_services = params_.services == ServiceFormat::kHeaded;
     if (!topics.scan.empty()) {
       close_unused(*robot);
       open_readers(*robot);
@@ -179,10 +181,7 @@ class RobotGateway::Impl {
     const std::lock_guard lock(mutex_);
     Shown& shown = shown_[topics.robot];
     shown.link.id = topics.robot;
-    write_to(
-        shown.velocity, topics.velocity, topics.stamped_velocity,
-        topics.stamped_velocity ? &geometry_msgs_msg_dds__TwistStamped__desc : &geometry_msgs_msg_dds__Twist__desc);
-    write_to(shown.goal, topics.goal, true, &geometry_msgs_msg_dds__PoseStamped__desc);
+    shown.commander.adopt(robot->topics, participant_.get(), thread_, clock_);
   }
 
   void close_unused(Robot& robot) {
@@ -239,19 +238,6 @@ class RobotGateway::Impl {
               topic.substr(3) + " is published with a " + policy_name(status.last_policy_id) + " that we cannot read");
     });
     robot.readers.emplace(topic, std::move(opened));
-  }
-
-  void write_to(CommandWriter& command, const std::string& topic, bool stamped, const dds_topic_descriptor_t* type) {
-    if (command.topic_name == topic && command.stamped == stamped) return;
-    command.writer = DdsEntity();
-    command.topic = DdsEntity();
-    command.topic_name = topic;
-    command.stamped = stamped;
-    if (topic.empty()) return;
-    command.topic = DdsEntity(dds_create_topic(participant_.get(), type, topic.c_str(), nullptr, nullptr));
-    if (command.topic)
-      command.writer =
-          DdsEntity(dds_create_writer(participant_.get(), command.topic.get(), state_qos(10).get(), nullptr));
   }
 
   /// Two sources on one topic are never mixed: the first is listened to as long as it says something.
@@ -326,6 +312,10 @@ class RobotGateway::Impl {
       robot->intake.tick(clock_->now());
       show(*robot);
     }
+    for (auto& [id, shown] : shown_)
+      for (const NavigationReport& report :
+           shown.commander.tick(clock_->now()))  // only this thread changes what it holds
+        if (callbacks_.on_navigation) callbacks_.on_navigation(report);
   }
 
   void show(const Robot& robot) {
@@ -356,6 +346,7 @@ class RobotGateway::Impl {
   mutable std::mutex mutex_;  // never held while a callback runs
   std::map<std::string, Shown> shown_;
   std::map<std::string, GatewayAlarm> alarms_;
+  std::uint64_t goals_ = 0;
   WaitThread thread_;
 };
 
@@ -377,8 +368,10 @@ std::vector<GatewayAlarm> RobotGateway::alarms() const { return impl_->alarms();
 Result<Ok> RobotGateway::drive(const std::string& robot, double speed_mps, double turn_rate_radps) {
   return impl_->drive(robot, speed_mps, turn_rate_radps);
 }
-Result<Ok> RobotGateway::send_goal(const std::string& robot, const Pose2& T_frame_goal, const std::string& frame_id) {
+Result<SentGoal> RobotGateway::send_goal(const std::string& robot, const Pose2& T_frame_goal,
+                                         const std::string& frame_id) {
   return impl_->send_goal(robot, T_frame_goal, frame_id);
 }
+Result<Ok> RobotGateway::stop(const std::string& robot) { return impl_->stop(robot); }
 
 }  // namespace smokemap

@@ -13,14 +13,19 @@
 #include "maps/odometry.hpp"
 #include "maps/radar_sweep.hpp"
 #include "robots/link.hpp"
+#include "robots/navigation_report.hpp"
 
 namespace smokemap {
+
+/// How services look on the wire: as the vendor of the robot's DDS has it (ros_service.hpp), or as somebody says.
+enum class ServiceFormat { kByVendor, kHeaded, kBare };
 
 struct GatewayParams {
   int domain = 0;  ///< ROS_DOMAIN_ID, 0..230
   LinkParams link;
   double mount_wait_s = 0.5;            ///< scans wait this long for the transform of their sensor
   std::map<std::string, Pose2> mounts;  ///< T_robot_laser by robot, where a robot does not publish it
+  ServiceFormat services = ServiceFormat::kByVendor;
   Result<Ok> validate() const;
 };
 
@@ -37,9 +42,15 @@ struct RobotLink {
   Stamp last_heard = 0;  ///< our clock
   bool has_radar = false;
   bool takes_velocity = false;  ///< somebody subscribes its cmd_vel
-  bool takes_goals = false;     ///< somebody subscribes its goal_pose
+  bool takes_goals = false;     ///< it offers NavigateToPose, or somebody subscribes its goal_pose
+  bool navigates = false;       ///< it offers NavigateToPose: goals are followed to their end and can be called off
   std::size_t scans = 0, sweeps = 0, odometry_readings = 0;
   std::map<std::string, std::size_t> dropped;  ///< reason -> count
+};
+
+struct SentGoal {
+  std::uint64_t number = 0;  ///< for telling reports apart
+  bool followed = false;     ///< reports will come; false: it went to goal_pose, which says nothing back
 };
 
 /// Finds robots on a ROS 2 network by their topics, listens to them and drives them. Plain DDS: no ROS is needed here,
@@ -47,8 +58,9 @@ struct RobotLink {
 ///
 /// A robot is any namespace that publishes a sensor_msgs/LaserScan. Read: its laser scan, odometry, radar
 /// (radar_image.hpp, docs/robots.md), tf and tf_static (its own and the shared ones). Written: cmd_vel (Twist or
-/// TwistStamped, whichever its subscriber takes) and goal_pose, both only once somebody subscribes them. Messages that
-/// are not what they should be are dropped and counted by reason; nothing a robot sends can stop the gateway.
+/// TwistStamped, whichever its subscriber takes) and goals: by the action NavigateToPose where the robot offers it,
+/// else to goal_pose; all only once somebody is there to take them. Messages that are not what they should be are
+/// dropped and counted by reason; nothing a robot sends can stop the gateway.
 class RobotGateway {
  public:
   /// Called from the gateway's own thread, one at a time; must be quick and must not throw. All are optional.
@@ -56,7 +68,8 @@ class RobotGateway {
     std::function<void(const LaserScan&)> on_scan;  ///< checked; T_robot_laser set
     std::function<void(const Odometry&)> on_odometry;
     std::function<void(const RadarSweep&)> on_sweep;
-    std::function<void(const GatewayAlarm&)> on_alarm;  ///< once for each new trouble
+    std::function<void(const GatewayAlarm&)> on_alarm;                ///< once for each new trouble
+    std::function<void(const NavigationReport&)> on_navigation = {};  ///< each step of a goal
   };
 
   /// kIo when DDS cannot start: no free participant index, no such interface.
@@ -72,11 +85,14 @@ class RobotGateway {
   /// Troubles that last: QoS that does not fit, two sources on one topic, sensors without a known place.
   std::vector<GatewayAlarm> alarms() const;
 
-  /// kNotFound while nobody subscribes to that robot's cmd_vel / goal_pose; kInvalidArgument for what is not finite.
+  /// kNotFound while nobody takes that robot's velocities / goals; kInvalidArgument for what is not finite.
   /// The robot's own watchdog must stop it when nothing comes for 0.5 s: call at 10 Hz or more, with zeros at the end.
   Result<Ok> drive(const std::string& robot, double speed_mps, double turn_rate_radps);
-  /// Pose in the robot's frame `frame_id`.
-  Result<Ok> send_goal(const std::string& robot, const Pose2& T_frame_goal, const std::string& frame_id = "map");
+  /// Pose in the robot's frame `frame_id`. A robot that navigates gives up an earlier goal for it.
+  Result<SentGoal> send_goal(const std::string& robot, const Pose2& T_frame_goal, const std::string& frame_id = "map");
+  /// Emergency: zero velocity, and every goal of its navigator is called off, whoever sent it. kNotFound when there is
+  /// neither to speak to.
+  Result<Ok> stop(const std::string& robot);
 
  private:
   class Impl;

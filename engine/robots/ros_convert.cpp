@@ -146,11 +146,16 @@ bool write_sweep(dds_entity_t writer, const RadarSweep& sweep, const std::string
   return dds_write(writer, &message) == DDS_RETCODE_OK;
 }
 
-bool write_goal(dds_entity_t writer, const Pose2& T_frame_goal, const std::string& frame, Stamp stamp) {
+RosPoseMsg ros_pose(const Pose2& T_frame_goal, const std::string& frame, Stamp stamp) {
   RosPoseMsg message{};
   message.header = header_of(stamp, frame);
   message.pose.position = {T_frame_goal.x(), T_frame_goal.y(), 0};
   message.pose.orientation = quaternion_of(T_frame_goal.heading());
+  return message;
+}
+
+bool write_goal(dds_entity_t writer, const Pose2& T_frame_goal, const std::string& frame, Stamp stamp) {
+  const RosPoseMsg message = ros_pose(T_frame_goal, frame, stamp);
   return dds_write(writer, &message) == DDS_RETCODE_OK;
 }
 

@@ -43,6 +43,9 @@ int add_transforms(const RosTransformsMsg& message, FrameTree& tree);
 /// A moving transform as odometry.
 Result<Odometry> to_odometry(const RosTransformMsg& message);
 
+/// The message borrows `frame`, which must outlive it.
+RosPoseMsg ros_pose(const Pose2& T_frame_goal, const std::string& frame, Stamp stamp);
+
 /// Writes one message. What the C struct points at lives in C++ values for the time of the call only.
 bool write_scan(dds_entity_t writer, const LaserScan& scan, const std::string& frame);
 bool write_odometry(dds_entity_t writer, const Odometry& odometry, const std::string& frame,

@@ -14,6 +14,8 @@ inline constexpr const char* kTwistTypeName = "geometry_msgs::msg::dds_::Twist_"
 inline constexpr const char* kTwistStampedTypeName = "geometry_msgs::msg::dds_::TwistStamped_";
 inline constexpr const char* kPoseTypeName = "geometry_msgs::msg::dds_::PoseStamped_";
 
+inline constexpr const char* kSendGoalTypeName = "nav2_msgs::action::dds_::NavigateToPose_SendGoal_Request_";
+
 /// A robot without a namespace is called this.
 inline constexpr const char* kLoneRobot = "robot";
 
@@ -26,6 +28,14 @@ struct RosName {
 };
 /// "rt/robot1/laser/scan" -> {"robot1", "scan"}; nothing for services, actions and what is not ROS.
 std::optional<RosName> parse_dds_topic(const std::string& dds_topic);
+
+/// A server of NavigateToPose by the topic it reads goals from:
+/// "rq/fox/navigate_to_pose/_action/send_goalRequest" -> {"fox", "fox/navigate_to_pose"}.
+struct ActionName {
+  std::string robot;
+  std::string action;
+};
+std::optional<ActionName> parse_navigation_server(const std::string& dds_topic);
 
 /// Does a name fit ROS's rules for one word of a namespace (letters, digits, underscores, not a digit first)?
 bool is_robot_name(const std::string& name);

@@ -25,6 +25,22 @@ std::string TopicTable::choose(const Endpoints& endpoints, const std::string& ro
   return best;
 }
 
+/// The maker of a DDS writes its number into the first bytes of every identifier. Only the two whose services are known
+/// are trusted with goals by action: the others are given theirs on goal_pose.
+void TopicTable::find_navigation(RobotTopics& robot, const std::string& name_space) const {
+  constexpr std::array<std::uint8_t, 2> kCyclone{0x01, 0x10}, kFast{0x01, 0x0f};
+  if (!robot.navigation.empty()) return;
+  for (const auto& [id, endpoint] : readers_) {
+    if (endpoint.type != kSendGoalTypeName) continue;
+    const auto name = parse_navigation_server(endpoint.topic);
+    const std::array<std::uint8_t, 2> vendor{id[0], id[1]};
+    if (!name || name->robot != name_space || (vendor != kCyclone && vendor != kFast)) continue;
+    if (!robot.navigation.empty() && robot.navigation <= name->action) continue;
+    robot.navigation = name->action;
+    robot.headed_services = vendor == kCyclone;
+  }
+}
+
 void TopicTable::complete(RobotTopics& robot, const std::string& name_space) const {
   const auto fill = [](std::string& topic, const std::string& found) {
     if (topic.empty()) topic = found;
@@ -33,6 +49,7 @@ void TopicTable::complete(RobotTopics& robot, const std::string& name_space) con
   fill(robot.radar, choose(writers_, name_space, kImageTypeName, "radar", true));
   fill(robot.moving_transforms, choose(writers_, name_space, kTransformsTypeName, "tf", true));
   fill(robot.goal, choose(readers_, name_space, kPoseTypeName, "goal_pose", true));
+  find_navigation(robot, name_space);
   if (!robot.velocity.empty()) return;
   robot.velocity = choose(readers_, name_space, kTwistStampedTypeName, "cmd_vel", true);
   robot.stamped_velocity = !robot.velocity.empty();

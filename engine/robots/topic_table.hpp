@@ -30,6 +30,8 @@ struct RobotTopics {
   std::vector<std::string> fixed_transforms;  ///< tf_static: its own, then the one all robots share
   std::string velocity, goal;                 ///< what it subscribes
   bool stamped_velocity = false;
+  std::string navigation;       ///< "fox/navigate_to_pose", where a server of that action is there
+  bool headed_services = true;  ///< how its services look on the wire (ros_service.hpp)
   bool operator==(const RobotTopics&) const = default;
 };
 
@@ -56,6 +58,7 @@ class TopicTable {
   static std::string choose(const Endpoints& endpoints, const std::string& robot, const char* type, const char* wanted,
                             bool only_wanted);
   void complete(RobotTopics& robot, const std::string& name_space) const;
+  void find_navigation(RobotTopics& robot, const std::string& name_space) const;
 
   Endpoints writers_;
   Endpoints readers_;

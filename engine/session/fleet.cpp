@@ -50,7 +50,7 @@ void Fleet::set_correction(const std::string& id, const Pose2& T_map_graph) {
 
 void Fleet::stop_now(const std::string& id) {
   for (auto& [name, robot] : robots_)
-    if (id.empty() || name == id) commands_->drive(name, 0, 0);
+    if (id.empty() || name == id) commands_->stop(name);
 }
 
 void Fleet::tick(Stamp now, Whiteboard& board, const Carrier& carrier) {

@@ -20,6 +20,8 @@ class RobotCommands {
  public:
   virtual ~RobotCommands() = default;
   virtual void drive(const std::string& robot, double speed_mps, double turn_rate_radps) = 0;
+  /// Emergency: stands at once, and whatever the robot does of its own accord is called off.
+  virtual void stop(const std::string& robot) { drive(robot, 0, 0); }
 };
 
 struct FleetParams {

@@ -50,7 +50,9 @@ TEST(TopicTable, MakesARobotOfEveryNamespaceWithAScan) {
                         {"rt/red/tf_static", "rt/tf_static"},
                         "rt/red/cmd_vel",
                         "rt/red/goal_pose",
-                        false};
+                        false,
+                        "",
+                        true};
   EXPECT_EQ(robots[1], red);
 }
 
@@ -105,6 +107,59 @@ TEST(TopicTable, OffersWhatTheWeakestWriterOffers) {
   EXPECT_FALSE(net.table.offer("rt/tf_static").transient_local);
   EXPECT_TRUE(net.table.offer("rt/tf_static").reliable);
   EXPECT_FALSE(net.table.offer("rt/nobody").reliable);
+}
+
+/// The identifier of an endpoint that the DDS of this maker made.
+DdsGuid made_by(std::uint8_t vendor, std::uint8_t number) {
+  DdsGuid id{};
+  id[0] = 1, id[1] = vendor, id[2] = number;
+  return id;
+}
+constexpr std::uint8_t kCycloneVendor = 0x10, kFastVendor = 0x0f, kConnextVendor = 0x01;
+
+TEST(TopicTable, FindsNavigatorsAndHowTheySpeak) {
+  Network net;
+  for (const char* robot : {"cat", "dog", "fox"}) net.writes("rt/" + std::string(robot) + "/scan", kScanTypeName);
+  const auto serves = [&](const std::string& topic, std::uint8_t vendor, const char* type = kSendGoalTypeName) {
+    net.table.add_reader(made_by(vendor, ++net.last), {topic, type, {}, {}});
+  };
+  serves("rq/cat/navigate_to_pose/_action/send_goalRequest", kCycloneVendor);
+  serves("rq/dog/navigate_to_pose/_action/send_goalRequest", kFastVendor);
+  serves("rq/fox/navigate_to_pose/_action/send_goalRequest", kConnextVendor);
+  serves("rq/fox/spin/_action/send_goalRequest", kCycloneVendor);
+  serves("rq/fox/navigate_to_pose/_action/send_goalRequest", kCycloneVendor, kPoseTypeName);
+  const auto robots = net.table.robots();
+  ASSERT_EQ(robots.size(), 3u);
+  EXPECT_EQ(robots[0].navigation, "cat/navigate_to_pose");
+  EXPECT_TRUE(robots[0].headed_services);
+  EXPECT_EQ(robots[1].navigation, "dog/navigate_to_pose");
+  EXPECT_FALSE(robots[1].headed_services);
+  EXPECT_EQ(robots[2].navigation, "") << "a vendor whose services are not known, another action, another type";
+  net.table.remove(made_by(kCycloneVendor, 104));
+  EXPECT_EQ(net.table.robots()[0].navigation, "");
+}
+
+TEST(TopicTable, GivesALoneRobotTheNavigatorWithoutANamespace) {
+  Network net;
+  net.writes("rt/scan", kScanTypeName);
+  net.table.add_reader(made_by(kFastVendor, 9),
+                       {"rq/navigate_to_pose/_action/send_goalRequest", kSendGoalTypeName, {}, {}});
+  ASSERT_EQ(net.table.robots().size(), 1u);
+  EXPECT_EQ(net.table.robots()[0].navigation, "navigate_to_pose");
+}
+
+TEST(RosNames, OfNavigatorsAreTakenApart) {
+  const auto fox = parse_navigation_server("rq/fox/navigate_to_pose/_action/send_goalRequest");
+  ASSERT_TRUE(fox);
+  EXPECT_EQ(fox->robot, "fox");
+  EXPECT_EQ(fox->action, "fox/navigate_to_pose");
+  EXPECT_EQ(parse_navigation_server("rq/navigate_to_pose/_action/send_goalRequest")->robot, kLoneRobot);
+  EXPECT_EQ(parse_navigation_server("rq/fox/base/navigate_to_pose/_action/send_goalRequest")->robot, "fox");
+  for (const char* other :
+       {"", "rq/", "rq//_action/send_goalRequest", "rq/_action/send_goalRequest", "rt/fox/navigate_to_pose",
+        "rq/fox/navigate_to_pose/_action/cancel_goalRequest", "rq//navigate_to_pose/_action/send_goalRequest",
+        "rq/fox/navigate_to_poses/_action/send_goalRequest", "rr/fox/navigate_to_pose/_action/send_goalReply"})
+    EXPECT_FALSE(parse_navigation_server(other)) << other;
 }
 
 TEST(RosNames, GoThereAndBack) {
