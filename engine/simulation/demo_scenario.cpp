@@ -66,12 +66,6 @@ const Way& choose_goal(const std::vector<Way>& ways, const SmokeField& smoke, co
   return *clearest;
 }
 
-StartHint point_at(const DemoScenario& demo, const Pose2& T_world_robot) {
-  const Point2 here = demo.plan.warp(T_world_robot.translation());
-  const Point2 ahead = demo.plan.warp(T_world_robot * Point2(0.5, 0));
-  return {demo.picture.to_pixels(here), std::atan2(ahead.y() - here.y(), ahead.x() - here.x())};
-}
-
 }  // namespace
 
 RandomBuildingParams DemoParams::demo_building() {
@@ -135,12 +129,18 @@ Result<DemoScenario> make_demo(std::uint64_t seed, const DemoParams& params) {
   demo.far_room_px = demo.picture.to_pixels(demo.plan.warp(demo.p_world_far_room));
 
   random = random_stream(seed, kStartStream);
-  demo.true_start = point_at(demo, demo.T_world_start);
+  demo.true_start = point_on_plan(demo, demo.T_world_start);
   demo.start = demo.true_start;
   const double finger_px = params.sigma_start_m / demo.picture.metres_per_pixel;
   demo.start.layout_px += Point2(normal(random, finger_px), normal(random, finger_px));
   demo.start.heading_rad = wrap_angle(demo.start.heading_rad + normal(random, params.sigma_start_rad));
   return demo;
+}
+
+StartHint point_on_plan(const DemoScenario& demo, const Pose2& T_world_robot) {
+  const Point2 here = demo.plan.warp(T_world_robot.translation());
+  const Point2 ahead = demo.plan.warp(T_world_robot * Point2(0.5, 0));
+  return {demo.picture.to_pixels(here), std::atan2(ahead.y() - here.y(), ahead.x() - here.x())};
 }
 
 SimulatedRobotParams demo_robot_params(const DemoScenario& demo) {

@@ -58,6 +58,9 @@ struct DemoParams {
 /// The same seed gives the same demo, byte for byte. Takes about 0.15 s. kInvalidArgument for bad parameters.
 Result<DemoScenario> make_demo(std::uint64_t seed = kDemoSeed, const DemoParams& params = {});
 
+/// How a pose in the true building looks on the plan, which is wrong: what a person who knows both would point at.
+StartHint point_on_plan(const DemoScenario& demo, const Pose2& T_world_robot);
+
 /// The robot of the demo at its start.
 SimulatedRobotParams demo_robot_params(const DemoScenario& demo);
 

@@ -20,6 +20,30 @@ struct Open {
   }
 };
 
+/// The middle of every room; both ends of corridors.
+std::vector<Point2> places_to_see(const FloorPlan& building) {
+  std::vector<Point2> places;
+  for (std::size_t i = 0; i < building.rooms.size(); ++i) {
+    const Polygon ring = building.outline(static_cast<int>(i));
+    const Point2 middle = centroid(ring);
+    if (!building.rooms[i].corridor) {
+      places.push_back(middle);
+      continue;
+    }
+    Point2 low = ring.front(), high = low;
+    for (const Point2& p : ring) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    const int axis = high.x() - low.x() > high.y() - low.y() ? 0 : 1;
+    for (const double at : {low[axis] + 1.2, high[axis] - 1.2}) {
+      places.push_back(middle);
+      places.back()[axis] = at;
+    }
+  }
+  return places;
+}
+
 }  // namespace
 
 Result<Ok> PathDriverParams::validate() const {
@@ -119,36 +143,23 @@ VelocityCommand PathDriver::drive(const Pose2& T_world_robot) {
   return command;
 }
 
-std::vector<Point2> room_tour(const FloorPlan& building, const Point2& from) {
-  std::vector<Point2> open, tour;
-  for (std::size_t i = 0; i < building.rooms.size(); ++i) {
-    const Polygon ring = building.outline(static_cast<int>(i));
-    const Point2 middle = centroid(ring);
-    if (!building.rooms[i].corridor) {
-      open.push_back(middle);
-      continue;
-    }
-    Point2 low = ring.front(), high = low;
-    for (const Point2& p : ring) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-    const int axis = high.x() - low.x() > high.y() - low.y() ? 0 : 1;
-    for (const double at : {low[axis] + 1.2, high[axis] - 1.2}) {
-      open.push_back(middle);
-      open.back()[axis] = at;
-    }
-  }
-  Point2 here = from;
-  while (!open.empty()) {
+std::vector<std::vector<Point2>> room_tours(const FloorPlan& building, const std::vector<Point2>& from) {
+  std::vector<Point2> open = places_to_see(building);
+  std::vector<std::vector<Point2>> tours(from.size());
+  std::vector<Point2> here = from;
+  for (std::size_t robot = 0; !open.empty() && !from.empty(); robot = (robot + 1) % from.size()) {
     const auto nearest = std::min_element(open.begin(), open.end(), [&](const Point2& a, const Point2& b) {
-      return (a - here).squaredNorm() < (b - here).squaredNorm();
+      return (a - here[robot]).squaredNorm() < (b - here[robot]).squaredNorm();
     });
-    here = *nearest;
-    tour.push_back(here);
+    here[robot] = *nearest;
+    tours[robot].push_back(*nearest);
     open.erase(nearest);
   }
-  return tour;
+  return tours;
+}
+
+std::vector<Point2> room_tour(const FloorPlan& building, const Point2& from) {
+  return room_tours(building, {from}).front();
 }
 
 }  // namespace smokemap

@@ -51,5 +51,7 @@ class PathDriver {
 
 /// One place in every room, nearest first from `from`: a tour. Corridors get a place at each end.
 std::vector<Point2> room_tour(const FloorPlan& building, const Point2& from);
+/// The same shared out: one robot after the other takes the place that is nearest to where it will be.
+std::vector<std::vector<Point2>> room_tours(const FloorPlan& building, const std::vector<Point2>& from);
 
 }  // namespace smokemap
