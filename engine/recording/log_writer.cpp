@@ -30,6 +30,20 @@ void LogWriter::add(const LogItem& item) {
   }
 }
 
+void LogWriter::add(const LogItem& item, Stamp now) {
+  heard_at_ = now;
+  add(item);
+  heard_at_.reset();
+}
+
+void LogWriter::add_goal(const std::string& robot, const Pose2& T_map_goal, Stamp now) {
+  write(robot, "goal_pose", kPoseType, now, encode_pose(T_map_goal, "map", now));
+}
+
+void LogWriter::add_event(const std::string& text, Stamp now) {
+  write("smokemap", "events", kStringType, now, encode_string(text));
+}
+
 void LogWriter::write_odometry(const Odometry& odometry) {
   const std::array transform{planar_transform(odometry.stamp, "odom", "base_link", odometry.T_odom_robot)};
   write(odometry.robot, "odom", kOdometryType, odometry.stamp, encode_odometry(odometry, "odom", "base_link"));
@@ -46,7 +60,7 @@ void LogWriter::write_mount(const std::string& robot, const char* frame, Stamp s
 
 void LogWriter::write(const std::string& robot, const char* name, const char* type, Stamp stamp,
                       std::span<const std::uint8_t> cdr) {
-  last_time_ = std::max(last_time_, stamp);
+  last_time_ = std::max(last_time_, heard_at_.value_or(stamp));
   const std::string topic = (robot == "robot" || robot.empty() ? "/" : "/" + robot + "/") + name;
   mcap_.write(mcap_.channel(topic, type), last_time_, cdr);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <ostream>
 #include <string>
 
@@ -19,6 +20,14 @@ class LogWriter {
   explicit LogWriter(std::ostream& out) : mcap_(out) {}
 
   void add(const LogItem& item);
+  /// The same, recorded at `now` of the clock of whoever records: robots' clocks may differ from it.
+  void add(const LogItem& item, Stamp now);
+  /// /<robot>/goal_pose in frame map.
+  void add_goal(const std::string& robot, const Pose2& T_map_goal, Stamp now);
+  /// A line of text on /smokemap/events.
+  void add_event(const std::string& text, Stamp now);
+  /// What was added so far is on its way to the disk.
+  void flush() { mcap_.flush(); }
   Result<Ok> finish() { return mcap_.finish(); }
 
  private:
@@ -29,6 +38,7 @@ class LogWriter {
 
   McapWriter mcap_;
   std::map<std::string, Pose2> mounts_;  ///< by robot and frame, as last written
+  std::optional<Stamp> heard_at_;        ///< of the item that is being written; none: its own stamp
   Stamp last_time_ = 0;
 };
 

@@ -159,6 +159,11 @@ void McapWriter::close_chunk() {
   chunk_ = Chunk();
 }
 
+void McapWriter::flush() {
+  close_chunk();
+  out_.flush();
+}
+
 McapWriter::Bytes McapWriter::statistics() const {
   McapRecord record(McapOp::kStatistics);
   record.number(messages_)

@@ -28,6 +28,9 @@ class McapWriter {
   /// Times before 1970 count as 0: the format has no others.
   void write(std::uint16_t channel, Stamp log_time, std::span<const std::uint8_t> cdr);
 
+  /// Ends the chunk early, so that what was written so far leaves this process.
+  void flush();
+
   /// Last chunk, indexes, end mark. Nothing may follow. kIo if any byte was not taken.
   Result<Ok> finish();
 

@@ -175,4 +175,17 @@ std::vector<std::uint8_t> encode_radar(const RadarSweep& sweep, const std::strin
   return cdr.bytes();
 }
 
+std::vector<std::uint8_t> encode_pose(const Pose2& pose, const std::string& frame, Stamp stamp) {
+  CdrWriter cdr;
+  write_header(cdr, stamp, frame);
+  write_doubles(cdr, {pose.x(), pose.y(), 0, 0, 0, std::sin(pose.heading() / 2), std::cos(pose.heading() / 2)});
+  return cdr.bytes();
+}
+
+std::vector<std::uint8_t> encode_string(const std::string& text) {
+  CdrWriter cdr;
+  cdr.string(text);
+  return cdr.bytes();
+}
+
 }  // namespace smokemap

@@ -21,6 +21,8 @@ inline constexpr const char* kLaserScanType = "sensor_msgs/msg/LaserScan";
 inline constexpr const char* kOdometryType = "nav_msgs/msg/Odometry";
 inline constexpr const char* kTransformsType = "tf2_msgs/msg/TFMessage";
 inline constexpr const char* kImageType = "sensor_msgs/msg/Image";
+inline constexpr const char* kPoseType = "geometry_msgs/msg/PoseStamped";
+inline constexpr const char* kStringType = "std_msgs/msg/String";
 
 struct RosScan {
   std::string frame;
@@ -54,5 +56,7 @@ std::vector<std::uint8_t> encode_odometry(const Odometry& odometry, const std::s
                                           const std::string& child_frame);
 std::vector<std::uint8_t> encode_transforms(std::span<const RosTransform> transforms);
 std::vector<std::uint8_t> encode_radar(const RadarSweep& sweep, const std::string& frame);
+std::vector<std::uint8_t> encode_pose(const Pose2& pose, const std::string& frame, Stamp stamp);
+std::vector<std::uint8_t> encode_string(const std::string& text);
 
 }  // namespace smokemap
