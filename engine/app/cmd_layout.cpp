@@ -2,12 +2,12 @@
 #include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
 #include "app/commands.hpp"
 #include "app/layout_preview.hpp"
+#include "app/map_picture.hpp"
 #include "layout/read_layout.hpp"
 #include "recording/file_bytes.hpp"
 #include "recording/layout_json.hpp"
@@ -67,8 +67,9 @@ void run_layout(const LayoutArguments& arguments, Outcome& outcome) {
   if (!reading) return outcome.no_answer(reading.error());
   if (const auto written = write_file(arguments.output, document(*reading) + "\n"); !written)
     return outcome.no_answer(written.error());
-  if (!arguments.preview.empty() && !cv::imwrite(arguments.preview, draw_layout(reading->rectified, reading->layout)))
-    outcome.no_answer(fail(Errc::kIo, "cannot write " + arguments.preview));
+  if (arguments.preview.empty()) return;
+  if (const auto drawn = write_picture(arguments.preview, draw_layout(reading->rectified, reading->layout)); !drawn)
+    outcome.no_answer(drawn.error());
 }
 
 }  // namespace

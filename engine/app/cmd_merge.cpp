@@ -1,16 +1,18 @@
-#include <filesystem>
+#include <spdlog/spdlog.h>
+
 #include <fstream>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <string>
 
 #include "acg/auto_complete_graph.hpp"
 #include "acg/published_graph.hpp"
 #include "app/commands.hpp"
+#include "app/map_picture.hpp"
 #include "app/merge_files.hpp"
 #include "app/merge_preview.hpp"
 #include "localization/localize_nodes.hpp"
+#include "recording/file_bytes.hpp"
 #include "recording/layout_json.hpp"
 #include "recording/map_server.hpp"
 #include "recording/sensor_log.hpp"
@@ -72,6 +74,7 @@ Result<Ok> read_plan(const MergeArguments& arguments, Merging& work) {
 Result<Ok> run_robot(const std::string& path, Merging& work) {
   const auto log = read_log(path);
   if (!log) return log.error();
+  for (const std::string& warning : log->warnings) spdlog::warn("{}", warning);
   Slam slam;
   std::size_t scans = 0;
   for (const LogItem& item : log->items) {
@@ -144,9 +147,8 @@ std::vector<Pose2> node_poses(const MergedMap& merged) {
 }
 
 Result<Ok> write_answers(const MergeArguments& arguments, const Merging& work) {
-  std::ofstream file(arguments.output);
-  file << merged_to_json(work.merged, work.layout, work.points_px) << '\n';
-  if (!file) return fail(Errc::kIo, "cannot write " + arguments.output);
+  const std::string document = merged_to_json(work.merged, work.layout, work.points_px) + "\n";
+  if (const auto written = write_file(arguments.output, document); !written) return written;
   if (!arguments.trajectory.empty()) {
     Trajectory corrected = work.slam_trajectory;
     for (StampedPose& p : corrected) p.T_map_robot = corrected_pose(work.graph, work.merged, p.stamp, p.T_map_robot);
@@ -155,9 +157,8 @@ Result<Ok> write_answers(const MergeArguments& arguments, const Merging& work) {
   if (!arguments.map.empty())
     if (const auto written = write_map(render_map(work.graph, node_poses(work.merged)), arguments.map); !written)
       return written;
-  if (!arguments.preview.empty() && !cv::imwrite(arguments.preview, draw_merged(work.merged, work.graph)))
-    return fail(Errc::kIo, "cannot write " + arguments.preview);
-  return Ok{};
+  if (arguments.preview.empty()) return Ok{};
+  return write_picture(arguments.preview, draw_merged(work.merged, work.graph));
 }
 
 Result<Ok> run_merge(const MergeArguments& arguments) {

@@ -7,6 +7,7 @@
 
 #include "app/commands.hpp"
 #include "app/picture_reader.hpp"
+#include "app/recording_port.hpp"
 #include "app/robot_link.hpp"
 #include "app/simulated_site.hpp"
 #include "server/app/server.hpp"
@@ -23,6 +24,8 @@ struct ServeArguments {
   int ros_domain = 0;
   bool demo = false;
   std::uint64_t seed = kDemoSeed;
+  int robots = 1;
+  std::string record;
   std::vector<std::string> host_names;
 };
 
@@ -52,10 +55,10 @@ Result<server::Json> command(server::Server& server, const std::string& name, se
                      server::Json{{"type", "command"}, {"id", id}, {"name", name}, {"data", std::move(data)}}.dump());
 }
 
-/// What a commander does before deployment: uploads the plan, gives its scale, says where the robot stands. Once; after
-/// a restart the stored plan is taken, and only the robot's place is said again.
+/// What a commander does before deployment: uploads the plan, gives its scale, says where the robots stand. Once; after
+/// a restart the stored plan is taken, and only the robots' places are said again.
 Result<Ok> prepare_demo(server::Server& server, const Engine& engine, const DemoScenario& demo,
-                        const std::string& robot) {
+                        const std::vector<FleetMember>& members) {
   if (!engine.snapshot()->layout) {
     std::vector<std::uint8_t> png;
     if (!cv::imencode(".png", demo.picture.sheet, png)) return fail(Errc::kIo, "the demo's plan could not be drawn");
@@ -68,14 +71,33 @@ Result<Ok> prepare_demo(server::Server& server, const Engine& engine, const Demo
     if (const auto set = command(server, "set_layout", {{"plan_id", id}, {"layout", *layout}}); !set)
       return set.error();
   }
-  const Point2& px = demo.start.layout_px;
-  if (const auto set = command(server, "set_start",
-                               {{"robot", robot}, {"px", {px.x(), px.y()}}, {"heading", demo.start.heading_rad}});
-      !set)
-    return set.error();
-  if (const auto set = command(server, "set_exploring", {{"robot", robot}, {"exploring", true}}); !set)
-    return set.error();
+  for (const FleetMember& member : members) {
+    const std::string& robot = member.params.name;
+    const Point2& px = member.start.layout_px;
+    if (const auto set = command(server, "set_start",
+                                 {{"robot", robot}, {"px", {px.x(), px.y()}}, {"heading", member.start.heading_rad}});
+        !set)
+      return set.error();
+    if (const auto set = command(server, "set_exploring", {{"robot", robot}, {"exploring", true}}); !set)
+      return set.error();
+  }
   return Ok{};
+}
+
+/// The recording, where one was asked for; null otherwise.
+Result<std::unique_ptr<LiveRecorder>> start_recording(const std::string& path) {
+  if (path.empty()) return std::unique_ptr<LiveRecorder>();
+  return LiveRecorder::start(path, {}, [](const std::string& text) { spdlog::error("{}", text); });
+}
+
+Result<std::unique_ptr<SimulatedSite>> start_demo(const ServeArguments& arguments, server::Server& server,
+                                                  const Engine& engine) {
+  const auto demo = make_demo(arguments.seed);
+  if (!demo) return demo.error();
+  auto members = demo_fleet(*demo, arguments.robots);
+  if (!members) return members.error();
+  if (const auto ready = prepare_demo(server, engine, *demo, *members); !ready) return ready.error();
+  return SimulatedSite::start(*demo, std::move(*members), arguments.ros_domain);
 }
 
 server::ServerOptions server_options(const ServeArguments& arguments, const std::shared_ptr<const Clock>& clock) {
@@ -95,25 +117,24 @@ Result<Ok> serve(const ServeArguments& arguments) {
   const auto robots = std::make_shared<RobotLinkage>();
   Engine engine({}, clock, robots);
   server::EngineAdapter adapter(engine);
+  const auto recorder = start_recording(arguments.record);
+  if (!recorder) return recorder.error();
+  RecordingPort port(adapter, clock, recorder->get());
   PictureReader pictures;
-  server::Server server(server_options(arguments, clock), adapter, pictures, clock);
+  server::Server server(server_options(arguments, clock), port, pictures, clock);
   if (const auto started = server.start(); !started) return started.error();
   GatewayParams gateway;
   gateway.domain = arguments.ros_domain;
   std::unique_ptr<SimulatedSite> site;
   if (arguments.demo) {
-    const auto demo = make_demo(arguments.seed);
-    if (!demo) return demo.error();
-    if (const auto ready = prepare_demo(server, engine, *demo, demo_robot_params(*demo).name); !ready)
-      return ready.error();
-    auto started = SimulatedSite::start(*demo, arguments.ros_domain);
+    auto started = start_demo(arguments, server, engine);
     if (!started) return started.error();
     site = std::move(*started);
   }
-  if (const auto opened = robots->open(gateway, engine, clock); !opened) return opened.error();
+  if (const auto opened = robots->open(gateway, engine, clock, recorder->get()); !opened) return opened.error();
   (void)server::run_until_signal(server);
   robots->close();
-  return Ok{};
+  return *recorder ? (*recorder)->finish() : Result<Ok>(Ok{});
 }
 
 }  // namespace
@@ -133,7 +154,14 @@ void add_serve(CLI::App& app, Outcome& outcome) {
       ->capture_default_str();
   sub->add_flag("--demo", arguments->demo,
                 "simulated building, plan and robot; browsers on this machine pair by themselves");
-  sub->add_option("--seed", arguments->seed, "of the demo's building")->capture_default_str();
+  sub->add_option("--seed", arguments->seed, "of the demo's building")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  sub->add_option("--robots", arguments->robots, "of the demo")
+      ->check(CLI::Range(1, kMostRobots))
+      ->capture_default_str();
+  sub->add_option("--record", arguments->record,
+                  "MCAP file for what robots send and people do; `smokemap slam` replays it. Never written over");
   sub->callback([arguments, &outcome] {
     if (const auto done = serve(*arguments); !done) outcome.no_answer(done.error());
   });

@@ -2,16 +2,17 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <utility>
 
 #include "app/commands.hpp"
+#include "app/map_picture.hpp"
 #include "app/simulate_files.hpp"
 #include "core/random.hpp"
 #include "recording/file_bytes.hpp"
 #include "recording/layout_json.hpp"
 #include "recording/sensor_log.hpp"
+#include "simulation/simulated_fleet.hpp"
 
 namespace smokemap::app {
 namespace {
@@ -21,12 +22,19 @@ struct SimulateArguments {
   std::uint64_t seed = kDemoSeed;
   double duration_s = 1200;
   bool no_radar = false;
+  int robots = 1;
+};
+
+struct Scenario {
+  DemoParams demo;
+  bool smoke_spreads = false;
 };
 
 /// The scenario file: every field is optional, unknown ones are refused so that a misspelt one is not silently ignored.
-Result<DemoParams> read_scenario(const std::string& path) {
-  DemoParams params;
-  if (path.empty()) return params;
+Result<Scenario> read_scenario(const std::string& path) {
+  Scenario scenario;
+  DemoParams& params = scenario.demo;
+  if (path.empty()) return scenario;
   const auto bytes = read_file(path, 1'000'000);
   if (!bytes) return bytes.error();
   const auto document = nlohmann::json::parse(bytes->begin(), bytes->end(), nullptr, false);
@@ -61,21 +69,15 @@ Result<DemoParams> read_scenario(const std::string& path) {
         params.sigma_start_m = value;
       else if (key == "sigma_start_deg")
         params.sigma_start_rad = radians(value);
+      else if (key == "smoke_spreads")
+        scenario.smoke_spreads = value;
       else
         return fail(Errc::kInvalidArgument, path + ": unknown field \"" + key + "\"");
     }
   } catch (const nlohmann::json::exception& e) {
     return fail(Errc::kCorrupt, path + ": " + e.what());
   }
-  return params;
-}
-
-Result<Ok> write_picture(const std::string& path, const cv::Mat& picture) {
-  try {
-    if (cv::imwrite(path, picture)) return Ok{};
-  } catch (const cv::Exception&) {  // an ending it does not know
-  }
-  return fail(Errc::kIo, "cannot write the picture " + path);
+  return scenario;
 }
 
 Result<Ok> write_run(const std::string& path, RecordedRun& run) {
@@ -114,18 +116,24 @@ Result<Ok> write_all(const SimulateArguments& arguments, const DemoParams& param
 }
 
 void run_simulate(const SimulateArguments& arguments, Outcome& outcome) {
-  const auto params = read_scenario(arguments.scenario);
-  if (!params) return outcome.no_answer(params.error());
-  const auto demo = make_demo(arguments.seed, *params);
+  const auto scenario = read_scenario(arguments.scenario);
+  if (!scenario) return outcome.no_answer(scenario.error());
+  const bool is_mcap = std::filesystem::path(arguments.output).extension() == ".mcap";
+  if (arguments.robots > 1 && !is_mcap)
+    return outcome.no_answer(
+        fail(Errc::kInvalidArgument, "a CARMEN log holds one robot only: name the output .mcap for several"));
+  const auto demo = make_demo(arguments.seed, scenario->demo);
   if (!demo) return outcome.no_answer(demo.error());
   RunParams how;
   how.max_duration_s = arguments.duration_s;
   how.with_radar = !arguments.no_radar;
-  how.skew = std::filesystem::path(arguments.output).extension() == ".mcap";  // CARMEN logs cannot tell of it
+  how.skew = is_mcap;  // CARMEN logs cannot tell of it
+  how.robots = arguments.robots;
+  how.smoke_spreads = scenario->smoke_spreads;
   auto run = record_run(*demo, how);
   if (!run) return outcome.no_answer(run.error());
-  const std::size_t scans = run->truth.size();
-  if (const auto written = write_all(arguments, *params, *demo, *run); !written)
+  const std::size_t scans = run->T_odom_scan.size();
+  if (const auto written = write_all(arguments, scenario->demo, *demo, *run); !written)
     return outcome.no_answer(written.error());
   std::cout << demo->building.rooms.size() << " rooms, " << run->duration_s << " s, " << run->way_m << " m, " << scans
             << " scans, " << run->bumps << " bumps\n";
@@ -140,8 +148,13 @@ void add_simulate(CLI::App& app, Outcome& outcome) {
   command->add_option("scenario", arguments->scenario,
                       "JSON with variations: length_m, depth_m, corridor_m, furniture, leaf_share, "
                       "stretch, sigma_corner_m, missing_walls, phantom_walls, turn_deg, fire, burning_s, "
-                      "sigma_start_m, sigma_start_deg");
-  command->add_option("--seed", arguments->seed, "the same seed gives the same files")->capture_default_str();
+                      "sigma_start_m, sigma_start_deg, smoke_spreads");
+  command->add_option("--seed", arguments->seed, "the same seed gives the same files")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--robots", arguments->robots, "that share the rooms out among them")
+      ->check(CLI::Range(1, kMostRobots))
+      ->capture_default_str();
   command->add_option("-o,--output", arguments->output, "run.mcap (scans, odometry, radar) or a CARMEN log (.log)")
       ->required();
   command->add_option("--truth", arguments->truth, "JSON: poses, walls, corners, points as they truly are");

@@ -3,12 +3,12 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
 #include "app/commands.hpp"
+#include "app/map_picture.hpp"
 #include "recording/file_bytes.hpp"
 #include "recording/picture_file.hpp"
 #include "sketch/clean_sketch.hpp"
@@ -91,9 +91,11 @@ void run_sketch(const SketchArguments& arguments, Outcome& outcome) {
   if (!clean) return outcome.no_answer(clean.error());
   for (const auto& w : warnings) std::cerr << w << '\n';
   for (const auto& w : clean->warnings) std::cerr << w << '\n';
-  if (!cv::imwrite(arguments.output, clean->free_space))
-    return outcome.no_answer(fail(Errc::kIo, "cannot write " + arguments.output));
-  if (!arguments.preview.empty()) cv::imwrite(arguments.preview, draw_sketch(*sketch, *clean));
+  if (const auto written = write_picture(arguments.output, clean->free_space); !written)
+    return outcome.no_answer(written.error());
+  if (arguments.preview.empty()) return;
+  if (const auto drawn = write_picture(arguments.preview, draw_sketch(*sketch, *clean)); !drawn)
+    outcome.no_answer(drawn.error());
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
-#include <fstream>
+#include <spdlog/spdlog.h>
+
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
 #include "app/commands.hpp"
+#include "recording/file_bytes.hpp"
 #include "recording/map_server.hpp"
 #include "recording/sensor_log.hpp"
 #include "recording/trajectory_tum.hpp"
@@ -54,16 +56,10 @@ nlohmann::json stats_of(const Slam& slam, const SensorLog& log) {
           {"warnings", log.warnings}};
 }
 
-Result<Ok> write_stats(const nlohmann::json& stats, const std::string& path) {
-  std::ofstream file(path);
-  file << stats.dump(1) << '\n';
-  if (!file) return fail(Errc::kIo, "cannot write " + path);
-  return Ok{};
-}
-
 Result<Ok> run_slam(const SlamOptions& options) {
   const auto log = read_log(options.log);
   if (!log) return log.error();
+  for (const std::string& warning : log->warnings) spdlog::warn("{}", warning);
   const bool radar_only = options.sensor == "radar" || (options.sensor == "auto" && log->scans() == 0);
   const bool lidar_only = options.sensor == "lidar";
   SlamParams params;
@@ -84,7 +80,7 @@ Result<Ok> run_slam(const SlamOptions& options) {
     render.resolution_m = options.resolution_m;
     if (const auto written = write_map(render_map(slam.graph(), {}, render), options.map); !written) return written;
   }
-  if (!options.stats.empty()) return write_stats(stats_of(slam, *log), options.stats);
+  if (!options.stats.empty()) return write_file(options.stats, stats_of(slam, *log).dump(1) + "\n");
   return Ok{};
 }
 

@@ -22,6 +22,7 @@ int run(int argc, char** argv) {
   CLI::App app{"Smokemap: one live map for firefighters and robots"};
   app.set_version_flag("--version", "smokemap 0.1.0");
   app.require_subcommand(1);
+  app.fallthrough();  // --json is understood after the subcommand too
   Outcome outcome;
   app.add_flag("--json", outcome.json, "also print errors as JSON on standard output");
   add_serve(app, outcome);
@@ -35,6 +36,11 @@ int run(int argc, char** argv) {
   add_merge(app, outcome);
   add_slam(app, outcome);
   add_evaluate(app, outcome);
+  const auto is_named = [&](const CLI::App* sub) { return sub->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_named).empty()) {
+    std::cerr << "smokemap: there is no subcommand '" << argv[1] << "'; smokemap --help lists them\n";
+    return 2;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

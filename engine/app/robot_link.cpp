@@ -4,21 +4,35 @@
 
 namespace smokemap::app {
 
-void RobotLinkage::drive(const std::string& robot, double speed_mps, double turn_rate_radps) {
-  std::shared_ptr<RobotGateway> gateway;
-  {
-    const std::lock_guard lock(mutex_);
-    gateway = gateway_;
-  }
-  if (gateway) (void)gateway->drive(robot, speed_mps, turn_rate_radps);  // no subscriber yet: the robot stands anyway
+std::shared_ptr<RobotGateway> RobotLinkage::gateway() const {
+  const std::lock_guard lock(mutex_);
+  return gateway_;
 }
 
-Result<Ok> RobotLinkage::open(const GatewayParams& params, Engine& engine, std::shared_ptr<const Clock> clock) {
+void RobotLinkage::drive(const std::string& robot, double speed_mps, double turn_rate_radps) {
+  if (const auto here = gateway())
+    (void)here->drive(robot, speed_mps, turn_rate_radps);  // no subscriber yet: the robot stands anyway
+}
+
+void RobotLinkage::stop(const std::string& robot) {
+  if (const auto here = gateway()) (void)here->stop(robot);
+}
+
+Result<Ok> RobotLinkage::open(const GatewayParams& params, Engine& engine, std::shared_ptr<const Clock> clock,
+                              LiveRecorder* recorder) {
+  const auto record = [recorder, clock](const LogItem& item) {
+    if (recorder) recorder->add(item, clock->now());
+  };
   RobotGateway::Callbacks callbacks;
-  callbacks.on_scan = [&engine](const LaserScan& scan) { engine.add_scan(scan); };
-  callbacks.on_odometry = [&engine](const Odometry& odometry) { engine.add_odometry(odometry); };
-  callbacks.on_sweep = [&engine](const RadarSweep& sweep) { engine.add_sweep(sweep); };
+  callbacks.on_scan = [&engine, record](const LaserScan& scan) { engine.add_scan(scan), record(scan); };
+  callbacks.on_odometry = [&engine, record](const Odometry& odometry) {
+    engine.add_odometry(odometry), record(odometry);
+  };
+  callbacks.on_sweep = [&engine, record](const RadarSweep& sweep) { engine.add_sweep(sweep), record(sweep); };
   callbacks.on_alarm = [](const GatewayAlarm& alarm) { spdlog::warn("robot {}: {}", alarm.robot, alarm.text); };
+  callbacks.on_navigation = [](const NavigationReport& report) {
+    spdlog::info("robot {}: goal {} {}", report.robot, report.goal, to_string(report.state));
+  };
   auto gateway = RobotGateway::open(params, std::move(callbacks), std::move(clock));
   if (!gateway) return gateway.error();
   const std::lock_guard lock(mutex_);

@@ -105,6 +105,14 @@ json point_truth(const DemoScenario& demo, const RecordedRun& run) {
   return points;
 }
 
+json poses_json(const Trajectory& trajectory) {
+  json poses = json::array();
+  for (const StampedPose& pose : trajectory)
+    poses.push_back({to_seconds(pose.stamp), rounded(pose.T_map_robot.x()), rounded(pose.T_map_robot.y()),
+                     rounded(pose.T_map_robot.heading())});
+  return poses;
+}
+
 json start_json(const StartHint& start) {
   return {{"layout_px", point(start.layout_px)}, {"heading_rad", rounded(start.heading_rad)}};
 }
@@ -121,11 +129,7 @@ void append_ranges(const LaserScan& scan, std::string& text) {
 }  // namespace
 
 std::string truth_json(const DemoScenario& demo, const RecordedRun& run) {
-  json poses = json::array(), corners = json::array(), building = json::array(), doors = json::array(),
-       closed = json::array();
-  for (const StampedPose& pose : run.truth)
-    poses.push_back({to_seconds(pose.stamp), rounded(pose.T_map_robot.x()), rounded(pose.T_map_robot.y()),
-                     rounded(pose.T_map_robot.heading())});
+  json corners = json::array(), building = json::array(), doors = json::array(), closed = json::array();
   const CornerJudge judge(demo, run);
   for (std::size_t i = 0; i < demo.truth.corner_world.size(); ++i) {
     const std::string kind = judge.kind(static_cast<int>(i));
@@ -144,23 +148,24 @@ std::string truth_json(const DemoScenario& demo, const RecordedRun& run) {
     doors.push_back(line);
     if (demo.building.doors[i].has_leaf && demo.building.doors[i].open_rad == 0) closed.push_back(line);
   }
-  const json document{{"seed", demo.seed},
-                      {"plan", "two wings"},
-                      {"poses", poses},
-                      {"walls", wall_truth(demo, run)},
-                      {"unplanned", unplanned_truth(demo, run)},
-                      {"building", building},
-                      {"doors", doors},
-                      {"closed_doors", closed},
-                      {"corners", corners},
-                      {"points", point_truth(demo, run)},
-                      {"start", start_json(demo.true_start)},
-                      {"fire", point(demo.to_map(demo.p_world_fire))},
-                      {"goal",
-                       {{"room", demo.far_room},
-                        {"layout_px", point(demo.far_room_px)},
-                        {"map", point(demo.to_map(demo.p_world_far_room))}}},
-                      {"run", {{"seconds", run.duration_s}, {"way_m", rounded(run.way_m)}, {"bumps", run.bumps}}}};
+  json document{{"seed", demo.seed},
+                {"plan", "two wings"},
+                {"poses", poses_json(run.truth)},
+                {"walls", wall_truth(demo, run)},
+                {"unplanned", unplanned_truth(demo, run)},
+                {"building", building},
+                {"doors", doors},
+                {"closed_doors", closed},
+                {"corners", corners},
+                {"points", point_truth(demo, run)},
+                {"start", start_json(demo.true_start)},
+                {"fire", point(demo.to_map(demo.p_world_fire))},
+                {"goal",
+                 {{"room", demo.far_room},
+                  {"layout_px", point(demo.far_room_px)},
+                  {"map", point(demo.to_map(demo.p_world_far_room))}}},
+                {"run", {{"seconds", run.duration_s}, {"way_m", rounded(run.way_m)}, {"bumps", run.bumps}}}};
+  for (const auto& [robot, poses] : run.others) document["other_robots"][robot] = poses_json(poses);
   return document.dump() + "\n";
 }
 
