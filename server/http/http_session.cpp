@@ -68,6 +68,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (!request) return refuse(error_response(400, "corrupt", "the request's target is malformed"));
     if (beast::websocket::is_upgrade(head)) return upgrade(*request);
     request_ = *request;
+    if (parser_->content_length()) request_.content_length = *parser_->content_length();
     admission_ = service_.admit(request_);
     if (admission_.refusal) {
       const bool has_body = parser_->content_length_remaining().value_or(0) > 0 || head.chunked();

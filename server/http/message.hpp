@@ -30,6 +30,7 @@ struct Request {
   std::string local_address;
   std::uint16_t local_port = 0;
   bool from_loopback = false;
+  std::optional<std::uint64_t> content_length;  ///< as announced; none: unknown until all of it is there
   std::string body;
   std::optional<Identity> who;  ///< after admission
 };

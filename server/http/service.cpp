@@ -1,5 +1,6 @@
 #include "server/http/service.hpp"
 
+#include <algorithm>
 #include <exception>
 
 namespace smokemap::server {
@@ -91,7 +92,8 @@ Admission HttpService::admit(Request& request) const {
   }
   admission.route = route;
   admission.most_body_bytes = route->most_body_bytes;
-  if (route->most_body_bytes > limits_.large_body_bytes) {
+  const std::uint64_t announced = request.content_length.value_or(route->most_body_bytes);
+  if (std::min<std::uint64_t>(announced, route->most_body_bytes) > limits_.large_body_bytes) {
     auto counter = large_bodies_;
     admission.permit = std::shared_ptr<void>(nullptr, [counter](void*) { --*counter; });
     if (++*counter > limits_.most_large_bodies)
