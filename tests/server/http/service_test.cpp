@@ -85,6 +85,18 @@ TEST(LargeBodies, AreTakenOnlyAFewAtATime) {
   EXPECT_FALSE(refused());
 }
 
+TEST(LargeBodies, AreThoseThatComeNotThoseThatMightHaveCome) {
+  Parts parts;
+  parts.service->add({Method::kPost, "/api/commands", std::nullopt, 1000, false, saying("ok")});
+  std::vector<Admission> held;
+  for (int i = 0; i < 10; ++i) {  // small commands on a route that would take a large one
+    Request request = parts.request(Method::kPost, "/api/commands");
+    request.content_length = 50;
+    held.push_back(parts.service->admit(request));
+    EXPECT_FALSE(held.back().refusal) << "command " << i << " must not wait for others";
+  }
+}
+
 TEST(Handlers, ThatThrowBecomeOneError) {
   Parts parts;
   for (const bool on_worker : {false, true})
