@@ -36,9 +36,13 @@ struct Bounds {
   bool empty() const { return low.x() > high.x(); }
 };
 
+/// A solve that went wrong may leave walls without a place: they block nothing and bound nothing.
+bool is_somewhere(const MergedWall& wall) { return wall.segment_map.a.allFinite() && wall.segment_map.b.allFinite(); }
+
 Bounds bounds_of(const MergedMap& merged, const OccupancyGrid& sensed) {
   Bounds bounds;
-  for (const MergedWall& wall : merged.walls) bounds.add(wall.segment_map.a), bounds.add(wall.segment_map.b);
+  for (const MergedWall& wall : merged.walls)
+    if (is_somewhere(wall)) bounds.add(wall.segment_map.a), bounds.add(wall.segment_map.b);
   const GridFrame& frame = sensed.frame();
   if (!sensed.empty()) {
     bounds.add(frame.origin);
@@ -59,7 +63,7 @@ std::vector<Segment2> openings_map(const MergedMap& merged, const LayoutMap& lay
 cv::Mat hull_of_plan(const MergedMap& merged, const GridFrame& frame) {
   std::vector<cv::Point> points;
   for (const MergedWall& wall : merged.walls)
-    if (wall.layout_wall)
+    if (wall.layout_wall && is_somewhere(wall))
       for (const Point2& p : {wall.segment_map.a, wall.segment_map.b}) {
         const Cell cell = frame.cell_of(p);
         points.emplace_back(cell.x, cell.y);
@@ -84,7 +88,7 @@ cv::Mat grown(const cv::Mat& set, double radius_cells) {
 cv::Mat inside_of_plan(const MergedMap& merged, const LayoutMap& layout, const GridFrame& frame) {
   Canvas shell(frame);
   for (const MergedWall& wall : merged.walls)
-    if (wall.layout_wall) shell.line(wall.segment_map, 255);
+    if (wall.layout_wall && is_somewhere(wall)) shell.line(wall.segment_map, 255);
   for (const Segment2& gap : openings_map(merged, layout)) shell.line(gap, 255);
   cv::Mat thick = grown(shell.mat(), kHalfGapM / frame.resolution_m);
   cv::floodFill(thick, {0, 0}, cv::Scalar(128));
@@ -113,7 +117,7 @@ void paint_sensed(const OccupancyGrid& sensed, const GridFrame& frame, std::vect
 void paint_walls(const MergedMap& merged, const GridFrame& frame, std::vector<Ground>& ground) {
   Canvas walls(frame);
   for (const MergedWall& wall : merged.walls)
-    if (wall.state != WallState::kMissing) walls.line(wall.segment_map, 255);
+    if (wall.state != WallState::kMissing && is_somewhere(wall)) walls.line(wall.segment_map, 255);
   for (std::size_t i = 0; i < ground.size(); ++i)
     if (walls.mat().data[i] != 0 && ground[i] != Ground::kFree) ground[i] = Ground::kBlocked;
 }
