@@ -203,8 +203,9 @@ std::string Server::url() const {
 const std::string& Server::pin() const { return impl_->access->pin(); }
 
 int run_until_signal(Server& server) {
-  std::cout << "Smokemap is at " << server.url() << "\nPIN to pair a device: " << server.pin() << std::endl;
-  const int signal = wait_for_stop_signal();
+  const int signal = wait_for_stop_signal([&] {
+    std::cout << "Smokemap is at " << server.url() << "\nPIN to pair a device: " << server.pin() << std::endl;
+  });
   spdlog::info("stopping after signal {}", signal);
   server.stop();
   return 0;

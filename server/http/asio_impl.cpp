@@ -107,11 +107,12 @@ void NetServer::stop() {
   impl_->acceptor.close(ignored);
 }
 
-int wait_for_stop_signal() {
+int wait_for_stop_signal(const std::function<void()>& ready) {
   asio::io_context io;
   asio::signal_set signals(io, SIGINT, SIGTERM);
   int caught = 0;
   signals.async_wait([&caught](error_code, int number) { caught = number; });
+  ready();
   io.run();
   return caught;
 }

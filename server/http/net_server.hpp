@@ -45,6 +45,7 @@ class NetServer {
 };
 
 /// Blocks until SIGINT or SIGTERM; returns its number.
-int wait_for_stop_signal();
+/// @param ready called once signals are caught: whoever is told then may send one at once
+int wait_for_stop_signal(const std::function<void()>& ready);
 
 }  // namespace smokemap::server

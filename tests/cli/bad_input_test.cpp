@@ -18,6 +18,11 @@ struct BadInput {
   std::string says;
 };
 
+/// What ctest calls the case.
+void PrintTo(const BadInput& c, std::ostream* out) {
+  for (const std::string& argument : c.arguments) *out << argument << ' ';
+}
+
 /// A folder with one of everything that is not what its name says.
 struct BadFiles : SmokemapFolder {
   BadFiles() {

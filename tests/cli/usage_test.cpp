@@ -54,6 +54,12 @@ struct Misuse {
   std::string says;
 };
 
+/// What ctest calls the case.
+void PrintTo(const Misuse& c, std::ostream* out) {
+  *out << "smokemap";
+  for (const std::string& argument : c.arguments) *out << ' ' << argument;
+}
+
 class Misused : public testing::TestWithParam<Misuse> {};
 
 TEST_P(Misused, EndsWithStatusTwoAndWritesNothing) {

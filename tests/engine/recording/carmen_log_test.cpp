@@ -55,6 +55,9 @@ struct NoReturnCase {
   std::size_t hits;
 };
 
+/// What ctest calls the case.
+void PrintTo(const NoReturnCase& c, std::ostream* out) { *out << c.params << c.ranges; }
+
 class CarmenNoReturn : public testing::TestWithParam<NoReturnCase> {};
 
 TEST_P(CarmenNoReturn, IsNeverAHit) {
