@@ -11,6 +11,7 @@
 #include "app/map_picture.hpp"
 #include "matching/match.hpp"
 #include "matching/transfer.hpp"
+#include "segmentation/constriction.hpp"
 #include "segmentation/outline.hpp"
 #include "segmentation/segment.hpp"
 
@@ -74,7 +75,7 @@ Result<Segmentation> segment_file(const std::string& path) {
   if (!picture) return picture.error();
   const Result<cv::Mat> free_space = free_space_of_picture(*picture);
   if (!free_space) return free_space.error();
-  Result<Segmentation> segmentation = segment(*free_space, matching_segmentation_params());
+  Result<Segmentation> segmentation = segment_by_constrictions(*free_space, matching_segmentation_params());
   if (!segmentation) return fail(segmentation.error().code, path + ": " + segmentation.error().message);
   return segmentation;
 }

@@ -6,6 +6,7 @@
 
 #include "app/commands.hpp"
 #include "app/map_picture.hpp"
+#include "segmentation/maoris.hpp"
 #include "segmentation/outline.hpp"
 #include "segmentation/segment.hpp"
 #include "topology/voronoi_graph.hpp"
@@ -16,6 +17,7 @@ namespace {
 struct SegmentArguments {
   std::string picture, output, regions, preview, topology;
   MapKind kind = MapKind::kRobot;
+  bool maoris = false;
 };
 
 nlohmann::json pair_of(const Point2& p) { return {p.x(), p.y()}; }
@@ -31,6 +33,7 @@ nlohmann::json regions_document(const Segmentation& segmentation) {
                        {"centroid", pair_of(region.centroid_px)},
                        {"anchor", pair_of(region.anchor_px)},
                        {"clearance", region.clearance_px},
+                       {"confidence", region.confidence},
                        {"outline", std::move(outline)}});
   }
   for (const RegionBorder& border : segmentation.borders)
@@ -38,7 +41,9 @@ nlohmann::json regions_document(const Segmentation& segmentation) {
         {{"a", border.label_a},
          {"b", border.label_b},
          {"line", {border.line_px.a.x(), border.line_px.a.y(), border.line_px.b.x(), border.line_px.b.y()}},
-         {"width", border.width_px}});
+         {"width", border.width_px},
+         {"door", border.is_door},
+         {"confidence", border.confidence}});
   return {{"size", {segmentation.labels.cols, segmentation.labels.rows}}, {"regions", regions}, {"borders", borders}};
 }
 
@@ -47,7 +52,8 @@ Result<Ok> segment_picture(const SegmentArguments& arguments) {
   if (!picture) return picture.error();
   const Result<cv::Mat> free_space = free_space_of_picture(*picture);
   if (!free_space) return free_space.error();
-  const Result<Segmentation> segmentation = segment(*free_space, segmentation_params(arguments.kind));
+  const Result<Segmentation> segmentation =
+      arguments.maoris ? segment_maoris(*free_space, maoris_params(arguments.kind)) : segment(*free_space);
   if (!segmentation) return segmentation.error();
   if (!arguments.topology.empty()) {
     const Result<VoronoiGraph> graph = voronoi_graph(*free_space);
@@ -76,9 +82,11 @@ void add_segment(CLI::App& app, Outcome& outcome) {
   command->add_option("--json", arguments->regions, "regions and the borders between them, as JSON");
   command->add_option("--preview", arguments->preview, "PNG with one colour a region");
   command->add_option("--topology", arguments->topology, "PNG with the trimmed Voronoi graph");
-  command->add_option("--kind", arguments->kind, "what kind of map it is")
+  command->add_option("--kind", arguments->kind, "what kind of map it is; only MAORIS needs to know")
       ->transform(CLI::CheckedTransformer(std::map<std::string, MapKind>{
           {"sketch", MapKind::kSketch}, {"robot", MapKind::kRobot}, {"layout", MapKind::kLayout}}));
+  command->add_option("--method", arguments->maoris, "cuts (our own) or maoris (as published)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"cuts", false}, {"maoris", true}}));
   command->callback([arguments, &outcome] {
     const Result<Ok> done = segment_picture(*arguments);
     if (!done) outcome.no_answer(done.error());

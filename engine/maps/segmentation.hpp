@@ -20,6 +20,7 @@ struct Region {
   Point2 anchor_px = Point2::Zero();  ///< a point surely inside, farthest from walls
   double clearance_px = 0;            ///< of the anchor
   RegionKind kind = RegionKind::kRoom;
+  double confidence = 1;  ///< of its least sure border, 0.5..1; 1 where nobody doubts it (closed in, or given)
 };
 
 /// Where two regions touch: a door, a passage or a cut through open space.
@@ -28,6 +29,8 @@ struct RegionBorder {
   int label_b = 0;
   Segment2 line_px;  ///< straight boundary
   double width_px = 0;
+  double confidence = 1;  ///< that it is a boundary at all, 0.5..1
+  bool is_door = true;    ///< or the mouth of a place that is no wider than the opening
 };
 
 /// Free space split into regions. Pixels as in the picture given (y down).

@@ -16,6 +16,9 @@
 #include <tuple>
 #include <vector>
 
+#include "core/check.hpp"
+#include "segmentation/regions.hpp"
+#include "segmentation/straighten.hpp"
 #include "segmentation/thickness.hpp"
 #include "segmentation/zones.hpp"
 
@@ -97,7 +100,7 @@ void flood(const cv::Mat& thickness, const cv::Mat& basins, cv::Point seed, floa
   }
 }
 
-cv::Mat peel(const cv::Mat& clearance, const cv::Mat& thickness, const SegmentationParams& params) {
+cv::Mat peel(const cv::Mat& clearance, const cv::Mat& thickness, const ConstrictionParams& params) {
   const std::vector<cv::Point> order = by_falling_value(thickness);
   const cv::Mat basins = find_basins(clearance, by_falling_value(clearance), params.pinch_ratio);
   cv::Mat labels(thickness.size(), CV_32SC1, cv::Scalar(0));
@@ -111,16 +114,16 @@ cv::Mat peel(const cv::Mat& clearance, const cv::Mat& thickness, const Segmentat
   return labels;
 }
 
-struct Absorption {
+struct Peeling {
   int zone = 0;
   int into = 0;
   double depth = std::numeric_limits<double>::infinity();  ///< depth over what is allowed; below 1 is absorbed
 };
 
 /// How shallow a zone is, and the neighbour it hangs on to.
-Absorption shallowness(int id, const ZoneGraph& graph, double typical, const SegmentationParams& params) {
+Peeling peeled_depth(int id, const ZoneGraph& graph, double typical, const ConstrictionParams& params) {
   const Zone& zone = graph.zones().at(id);
-  Absorption found{id, 0, std::numeric_limits<double>::infinity()};
+  Peeling found{id, 0, std::numeric_limits<double>::infinity()};
   double widest = 0, highest = 0, second = 0;
   for (const auto& [other, contact] : zone.contacts) {
     const double peak = graph.zones().at(other).peak;
@@ -150,21 +153,21 @@ Absorption shallowness(int id, const ZoneGraph& graph, double typical, const Seg
 }
 
 /// Gives shallow zones to their neighbours, shallowest first; what a merge changes is looked at again.
-void absorb_shallow(ZoneGraph& graph, double typical, const SegmentationParams& params) {
+void give_back_shallow(ZoneGraph& graph, double typical, const ConstrictionParams& params) {
   using Key = std::tuple<double, double, int>;  // depth, area, zone
   std::set<Key> queue;
   std::map<int, Key> keys;
   const auto refresh = [&](int id) {
     if (const auto old = keys.find(id); old != keys.end()) queue.erase(old->second);
     const Zone& zone = graph.zones().at(id);
-    const Key key{shallowness(id, graph, typical, params).depth, zone.area, id};
+    const Key key{peeled_depth(id, graph, typical, params).depth, zone.area, id};
     keys[id] = key;
     queue.insert(key);
   };
   for (const auto& [id, zone] : graph.zones()) refresh(id);
   while (!queue.empty() && std::get<0>(*queue.begin()) < 1) {
     const int id = std::get<2>(*queue.begin());
-    const int into = shallowness(id, graph, typical, params).into;
+    const int into = peeled_depth(id, graph, typical, params).into;
     queue.erase(queue.begin());
     keys.erase(id);
     graph.merge(id, into);
@@ -173,16 +176,61 @@ void absorb_shallow(ZoneGraph& graph, double typical, const SegmentationParams& 
   }
 }
 
-}  // namespace
-
-cv::Mat constriction_labels(const cv::Mat& structure, const SegmentationParams& params) {
+/// Up to, and without, straight borders. CV_32SC1, 0 = not free, ids from 1 without order.
+cv::Mat constriction_labels(const cv::Mat& structure, const ConstrictionParams& params) {
   const cv::Mat clearance = clearance_image(structure);
   const cv::Mat thickness = local_thickness(clearance);
   cv::Mat labels = peel(clearance, thickness, params);
   ZoneGraph graph(labels, clearance);
-  absorb_shallow(graph, typical_thickness(thickness), params);
+  give_back_shallow(graph, typical_thickness(thickness), params);
   graph.relabel(labels);
   return labels;
+}
+
+/// Furniture hides how wide rooms are, so what counts as furniture is asked again once some of it is gone.
+cv::Mat without_furniture(const cv::Mat& free_space, double clutter_ratio) {
+  cv::Mat structure = without_islands(free_space, 0);
+  for (int round = 0; round < 3; ++round) {
+    const double typical = typical_thickness(local_thickness(clearance_image(structure)));
+    cv::Mat cleared = without_islands(free_space, clutter_ratio * typical);
+    const bool is_stable = cv::countNonZero(cleared != structure) == 0;
+    structure = cleared;
+    if (is_stable) break;
+  }
+  return structure;
+}
+
+}  // namespace
+
+Result<Ok> ConstrictionParams::validate() const {
+  return ParamCheck("ConstrictionParams")
+      .in_range("pinch_ratio", pinch_ratio, 0.1, 0.99)
+      .in_range("step_ratio", step_ratio, 0.1, 0.99)
+      .in_range("niche_depth", niche_depth, 0, 10)
+      .in_range("door_depth", door_depth, 0, 100)
+      .in_range("open_ratio", open_ratio, 0.1, 10)
+      .in_range("min_room_ratio", min_room_ratio, 0, 100)
+      .in_range("min_clearance_px", min_clearance_px, 0, 1000)
+      .in_range("clutter_ratio", clutter_ratio, 0, 10)
+      .result();
+}
+
+ConstrictionParams matching_segmentation_params() {
+  ConstrictionParams params;
+  params.min_room_ratio = 0.05;
+  return params;
+}
+
+Result<Segmentation> segment_by_constrictions(const cv::Mat& free_space, const ConstrictionParams& params) {
+  if (const Result<Ok> valid = params.validate(); !valid) return valid.error();
+  if (const Result<Ok> sound = check_free_space(free_space); !sound) return sound.error();
+  const cv::Mat structure = without_furniture(free_space, params.clutter_ratio);
+  cv::Mat labels = straighten_borders(constriction_labels(structure, params), structure);
+  labels.setTo(0, free_space != 255);
+  labels = connected_regions(labels);
+  const double typical = typical_thickness(local_thickness(clearance_image(structure)));
+  sweep_crumbs(labels, params.min_room_ratio * typical * typical);
+  return described(labels);
 }
 
 }  // namespace smokemap

@@ -4,6 +4,7 @@
 #include <deque>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <unordered_map>
 #include <utility>
@@ -84,6 +85,14 @@ Segment2 longest_chord(const std::vector<cv::Point>& pixels) {
   return {Point2(a.x, a.y), Point2(b.x, b.y)};
 }
 
+bool has_bare_neighbour(const cv::Mat& free_space, const cv::Mat& labels, int x, int y) {
+  const auto is_bare = [&](int nx, int ny) {
+    const bool inside = nx >= 0 && ny >= 0 && nx < labels.cols && ny < labels.rows;
+    return inside && labels.at<int>(ny, nx) == 0 && free_space.at<unsigned char>(ny, nx) == 255;
+  };
+  return is_bare(x - 1, y) || is_bare(x + 1, y) || is_bare(x, y - 1) || is_bare(x, y + 1);
+}
+
 }  // namespace
 
 std::vector<Contact> find_contacts(const cv::Mat& labels) {
@@ -121,7 +130,7 @@ void grow_labels(const cv::Mat& free_space, cv::Mat& labels) {
   std::deque<cv::Point> front;
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x)
-      if (labels.at<int>(y, x) != 0) front.emplace_back(x, y);
+      if (labels.at<int>(y, x) != 0 && has_bare_neighbour(free_space, labels, x, y)) front.emplace_back(x, y);
   while (!front.empty()) {
     const cv::Point p = front.front();
     front.pop_front();
@@ -133,6 +142,75 @@ void grow_labels(const cv::Mat& free_space, cv::Mat& labels) {
       front.push_back(n);
     }
   }
+}
+
+cv::Mat connected_regions(const cv::Mat& labels) {
+  cv::Mat result(labels.size(), CV_32SC1, cv::Scalar(0));
+  std::vector<cv::Point> stack;
+  int next = 0;
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x) {
+      if (labels.at<int>(y, x) == 0 || result.at<int>(y, x) != 0) continue;
+      const int own = labels.at<int>(y, x);
+      result.at<int>(y, x) = ++next;
+      stack.assign(1, {x, y});
+      while (!stack.empty()) {
+        const cv::Point p = stack.back();
+        stack.pop_back();
+        for (const cv::Point step : {cv::Point(1, 0), cv::Point(0, 1), cv::Point(-1, 0), cv::Point(0, -1)}) {
+          const cv::Point n = p + step;
+          if (n.x < 0 || n.y < 0 || n.x >= labels.cols || n.y >= labels.rows) continue;
+          if (labels.at<int>(n) != own || result.at<int>(n) != 0) continue;
+          result.at<int>(n) = next;
+          stack.push_back(n);
+        }
+      }
+    }
+  return result;
+}
+
+void sweep_crumbs(cv::Mat& labels, double least_area) {
+  double last = 0;
+  cv::minMaxLoc(labels, nullptr, &last);
+  std::vector<double> areas(static_cast<size_t>(last) + 1, 0);
+  for (auto label = labels.begin<int>(); label != labels.end<int>(); ++label) areas[static_cast<size_t>(*label)] += 1;
+  areas[0] = 0;
+  const double limit = std::min(least_area, *std::max_element(areas.begin(), areas.end()));
+  const auto is_crumb = [&](int label) { return label != 0 && areas[static_cast<size_t>(label)] < limit; };
+  if (std::none_of(areas.begin() + 1, areas.end(), [&](double area) { return area > 0 && area < limit; })) return;
+  cv::Mat to_room(labels.size(), CV_8UC1, cv::Scalar(255)), distance, nearest;
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (const int label = labels.at<int>(y, x); label != 0 && !is_crumb(label)) to_room.at<unsigned char>(y, x) = 0;
+  cv::distanceTransform(to_room, distance, nearest, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
+  std::vector<int> label_of(labels.total() + 1, 0);  // of the room pixel that the transform numbered so
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (to_room.at<unsigned char>(y, x) == 0)
+        label_of[static_cast<size_t>(nearest.at<int>(y, x))] = labels.at<int>(y, x);
+  std::map<int, std::map<int, int>> wish;
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (const int label = labels.at<int>(y, x); is_crumb(label))
+        ++wish[label][label_of[static_cast<size_t>(nearest.at<int>(y, x))]];
+  std::vector<int> joins(areas.size());
+  std::iota(joins.begin(), joins.end(), 0);
+  for (const auto& [crumb, votes] : wish)
+    joins[static_cast<size_t>(crumb)] =
+        std::max_element(votes.begin(), votes.end(), [](const auto& one, const auto& two) {
+          return one.second < two.second;
+        })->first;
+  for (auto label = labels.begin<int>(); label != labels.end<int>(); ++label)
+    *label = joins[static_cast<size_t>(*label)];
+}
+
+void label_rest(const cv::Mat& free_space, int next, cv::Mat& labels) {
+  cv::Mat rest = (labels == 0) & (free_space == 255), pieces;
+  cv::connectedComponents(rest, pieces, 4, CV_32S);
+  labels += pieces;
+  cv::Mat shift(labels.size(), CV_32SC1, cv::Scalar(0));
+  shift.setTo(next, rest);
+  labels += shift;
 }
 
 Segmentation describe_regions(const cv::Mat& labels) {
@@ -162,6 +240,23 @@ Segmentation describe_regions(const cv::Mat& labels) {
     const Segment2 line = longest_chord(contact.pixels);
     result.borders.push_back({contact.label_a, contact.label_b, line, line.length()});
   }
+  return result;
+}
+
+Result<Ok> check_free_space(const cv::Mat& free_space) {
+  constexpr size_t kMaxPixels = size_t{64} << 20;
+  if (free_space.empty() || free_space.type() != CV_8UC1)
+    return fail(Errc::kInvalidArgument, "segmentation needs an 8 bit picture of free space with one channel");
+  if (free_space.total() > kMaxPixels)
+    return fail(Errc::kTooLarge, "the map has more than 64 megapixels: reduce it first");
+  if (cv::countNonZero(free_space == 255) == 0) return fail(Errc::kDegenerate, "the map has no free space to split");
+  return Ok{};
+}
+
+Result<Segmentation> described(const cv::Mat& labels) {
+  Segmentation result = describe_regions(labels);
+  if (result.regions.size() > kMostRegions)
+    return fail(Errc::kTooLarge, "the map falls into more than 65535 regions: it is noise, not rooms");
   return result;
 }
 

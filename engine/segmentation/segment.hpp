@@ -7,42 +7,44 @@
 
 namespace smokemap {
 
-/// Ratios and counts only: nothing is tied to a resolution, because sketches have none.
+/// How freely boundaries without a door are drawn.
+struct BoundaryStyle {
+  double mouth_ratio = 0;     ///< a passage narrower than this share of the wider place it opens into is a boundary
+  double mouth_support = 0;   ///< added to it for each end at which a wall runs on in the direction of the boundary
+  double passage_depth = 0;   ///< a piece between boundaries shorter than this many widths of them is none of its own
+  double min_room_ratio = 0;  ///< smallest room, in squares of the usual thickness
+};
+
+/// One set for all kinds of maps. Ratios only: nothing is tied to a resolution, because sketches have none.
 struct SegmentationParams {
-  double pinch_ratio = 0.78;      ///< a passage narrower than this share of the rooms on both its sides is a door
-  double step_ratio = 0.70;       ///< where the thickness falls below this share of a room's, the room ends
-  double niche_depth = 0.30;      ///< what is shallower than this many widths of its opening belongs to its neighbour
-  double door_depth = 1.0;        ///< the same for a passage between two wider places: what is longer is a corridor
-  double open_ratio = 0.85;       ///< an opening at least this share as wide as the room is no boundary
-  double min_room_ratio = 0.50;   ///< smallest room, in squares of the usual clearance
-  double min_clearance_px = 1.5;  ///< free space narrower than this has no room of its own
-  double clutter_ratio = 1.0;     ///< islands smaller than this many typical clearances are furniture
+  double door_ratio = 0.6;    ///< an opening narrower than this share of the space on both its sides is a door
+  double door_support = 0.1;  ///< added to it for each end at which a wall runs on in the direction of the opening
+  double niche_depth = 0.3;   ///< what is shallower than this many widths of its opening belongs to its neighbour
+  BoundaryStyle with_doors{0.3, 0, 1, 0.5};            ///< where a map shows doors, what has none is one room
+  BoundaryStyle without_doors{0.87, 0.15, 0.4, 0.02};  ///< where it shows none, bends and widenings part rooms
+  double clutter_ratio = 0.7;       ///< islands smaller than this many usual thicknesses are furniture
+  double tolerance_ratio = 0.05;    ///< wobble of walls, in usual thicknesses
+  double least_tolerance_px = 1.5;  ///< but at least this
+  double longest_cut_ratio = 12;    ///< longest boundary, in usual thicknesses
 
   Result<Ok> validate() const;
 };
-
-/// The parameters for a kind of map. They differ for sketches, which have no furniture and name small niches.
-SegmentationParams segmentation_params(MapKind kind);
-
-/// The parameters for maps that are to be matched, the same for both: small rooms stay, because people draw them and
-/// matching tells them apart by what lies around them.
-SegmentationParams matching_segmentation_params();
 
 /// Splits free space into regions (rooms, corridors).
 ///
 /// Every free pixel gets exactly one region and isolated rooms stay. A region is connected (4 neighbours), but for
 /// crumbs of free space too small for a room and cut off from all, which take the label of the nearest region. The
-/// result does not depend on the largest open space of the map; a turn by 90 degrees turns it, but for ties.
+/// result does not depend on the largest open space of the map; a turn by 90 degrees turns it, but for ties. Every
+/// border and region says how sure it is.
 ///
 /// @param free_space  CV_8UC1, 255 = free, anything else = not free; untouched
 /// @return regions in descending area (ties: topmost, then leftmost pixel). kDegenerate if there is no free cell,
 ///         kInvalidArgument for another pixel type or parameters out of range, kTooLarge over 64 megapixels or
 ///         over 65535 regions.
-/// Cost: a megapixel takes a few tenths of a second and about 60 MB. Deterministic.
-/// Source: local thickness and its steps are those of MAORIS (Mielle, Magnusson, Lilienthal, ICRA 2018); differs:
-/// thickness is not scaled by the largest open space, rooms are peeled from basins instead of merged by chains of
-/// contacts, what is a niche is told by depth over width, borders are the shortest straight cuts, and isolated regions
-/// are kept.
+/// Cost: a megapixel takes two tenths of a second and about 60 MB. Deterministic.
+/// Source: own. That rooms end where walls run on (ROSE2: Luperto et al. 2022) and the local thickness of MAORIS
+/// (Mielle, Magnusson, Lilienthal, ICRA 2018; see maoris.hpp for it as published) gave the idea; differs from both:
+/// boundaries are straight cuts between corners of walls, judged by how much wider the space behind them is.
 Result<Segmentation> segment(const cv::Mat& free_space, const SegmentationParams& params = {});
 
 /// Rebuilds regions and borders from a label image alone (CV_16UC1, any labels; they are renumbered in descending

@@ -56,27 +56,49 @@ std::vector<RidgePixel> ridge_by_rising_clearance(const cv::Mat& clearance) {
   return ridge;
 }
 
+/// Fills the disc round `centre` with `value`.
+void paint_disc(cv::Mat& image, const cv::Point& centre, double radius, float value) {
+  const int reach = static_cast<int>(radius);
+  for (int dy = -reach; dy <= reach; ++dy) {
+    const int y = centre.y + dy;
+    if (y < 0 || y >= image.rows) continue;
+    const int half = static_cast<int>(std::sqrt(std::max(0.0, radius * radius - dy * dy)));
+    const int from = std::max(0, centre.x - half);
+    const int to = std::min(image.cols - 1, centre.x + half);
+    float* row = image.ptr<float>(y);
+    std::fill(row + from, row + to + 1, value);
+  }
+}
+
 }  // namespace
 
 cv::Mat local_thickness(const cv::Mat& clearance) {
   cv::Mat thickness = clearance.clone();
-  for (const RidgePixel& pixel : ridge_by_rising_clearance(clearance)) {
-    // In rising order, so that larger discs paint over smaller ones. Half a pixel more makes up for the covered discs
-    // that were left out and cannot reach beyond a wall.
-    const double squared = (pixel.clearance + 0.5) * (pixel.clearance + 0.5);
-    const int reach = static_cast<int>(std::sqrt(std::max(0.0, squared)));
-    for (int dy = -reach; dy <= reach; ++dy) {
-      const int y = pixel.y + dy;
-      if (y < 0 || y >= clearance.rows) continue;
-      const int half = static_cast<int>(std::sqrt(std::max(0.0, squared - dy * dy)));
-      const int from = std::max(0, pixel.x - half);
-      const int to = std::min(clearance.cols - 1, pixel.x + half);
-      float* row = thickness.ptr<float>(y);
-      std::fill(row + from, row + to + 1, pixel.clearance);
-    }
-  }
+  // In rising order, so that larger discs paint over smaller ones. Half a pixel more makes up for the covered discs
+  // that were left out and cannot reach beyond a wall.
+  for (const RidgePixel& pixel : ridge_by_rising_clearance(clearance))
+    paint_disc(thickness, {pixel.x, pixel.y}, pixel.clearance + 0.5, pixel.clearance);
   thickness.setTo(0, clearance <= 0);
   return thickness;
+}
+
+cv::Mat fuzzy_opening(const cv::Mat& clearance) {
+  const auto whole = [&](int x, int y) { return std::floor(value_or_zero(clearance, x, y)); };
+  std::vector<std::vector<cv::Point>> centres;  // by clearance
+  for (int y = 0; y < clearance.rows; ++y)
+    for (int x = 0; x < clearance.cols; ++x) {
+      const float own = whole(x, y);
+      const bool is_covered =
+          whole(x - 1, y) > own || whole(x + 1, y) > own || whole(x, y - 1) > own || whole(x, y + 1) > own;
+      if (own < 1 || is_covered) continue;
+      centres.resize(std::max(centres.size(), static_cast<size_t>(own) + 1));
+      centres[static_cast<size_t>(own)].emplace_back(x, y);
+    }
+  cv::Mat opening(clearance.size(), CV_32FC1, cv::Scalar(0));
+  for (size_t radius = 1; radius < centres.size(); ++radius)
+    for (const cv::Point& centre : centres[radius])
+      paint_disc(opening, centre, static_cast<double>(radius) - 1, static_cast<float>(radius));
+  return opening;
 }
 
 cv::Mat without_islands(const cv::Mat& free_space, double max_side_px) {

@@ -13,6 +13,10 @@ cv::Mat clearance_image(const cv::Mat& free_space);
 /// opening.) Cost: sum of squared clearances over the ridge of `clearance`.
 cv::Mat local_thickness(const cv::Mat& clearance);
 
+/// The same in whole pixels as MAORIS has it: discs of one pixel less than the clearance of their centres, each painted
+/// with that clearance. CV_32FC1.
+cv::Mat fuzzy_opening(const cv::Mat& clearance);
+
 /// The free space with furniture painted over: islands of not-free pixels whose larger side is below `max_side_px`
 /// become free. What touches the picture's edge stays. CV_8UC1.
 cv::Mat without_islands(const cv::Mat& free_space, double max_side_px);

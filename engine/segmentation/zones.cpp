@@ -21,23 +21,21 @@ void ZoneContact::add(const ZoneContact& other) {
 }
 
 ZoneGraph::ZoneGraph(const cv::Mat& labels, const cv::Mat& clearance) {
-  int last = 0;
+  int last = 0, known = 0;
+  Zone* zone = nullptr;
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x) {
       const int id = labels.at<int>(y, x);
       if (id == 0) continue;
       last = std::max(last, id);
-      Zone& zone = zones_[id];
-      zone.area += 1;
-      zone.peak = std::max(zone.peak, static_cast<double>(clearance.at<float>(y, x)));
+      if (id != known) zone = &zones_[known = id];
+      zone->area += 1;
+      if (!clearance.empty()) zone->peak = std::max(zone->peak, static_cast<double>(clearance.at<float>(y, x)));
       for (const cv::Point step : {cv::Point(1, 0), cv::Point(0, 1), cv::Point(-1, 0), cv::Point(0, -1)}) {
         const cv::Point n(x + step.x, y + step.y);
         const bool inside = n.x >= 0 && n.y >= 0 && n.x < labels.cols && n.y < labels.rows;
         const int other = inside ? labels.at<int>(n) : 0;
-        if (other == 0)
-          ++zone.wall_sides;
-        else if (other != id)
-          zone.contacts[other].add(cv::Point(x, y));
+        if (other != 0 && other != id) zone->contacts[other].add(cv::Point(x, y));
       }
     }
   parent_.resize(static_cast<size_t>(last) + 1);
@@ -51,7 +49,6 @@ void ZoneGraph::merge(int from, int into) {
   Zone& kept = zones_.at(into);
   kept.area += gone.area;
   kept.peak = std::max(kept.peak, gone.peak);
-  kept.wall_sides += gone.wall_sides;
   for (const auto& [other, contact] : gone.contacts) {
     if (other == into) continue;
     kept.contacts[other].add(contact);

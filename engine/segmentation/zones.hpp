@@ -19,8 +19,7 @@ struct ZoneContact {
 
 struct Zone {
   double area = 0;
-  double peak = 0;     ///< largest clearance in it
-  int wall_sides = 0;  ///< pixel sides towards not-free
+  double peak = 0;  ///< largest clearance in it, where clearances were given
   std::map<int, ZoneContact> contacts;
 };
 
@@ -29,7 +28,8 @@ struct Zone {
 class ZoneGraph {
  public:
   /// @param labels  CV_32SC1, 0 = not free, ids from 1
-  ZoneGraph(const cv::Mat& labels, const cv::Mat& clearance);
+  /// @param clearance  CV_32FC1 of the same size, or empty
+  explicit ZoneGraph(const cv::Mat& labels, const cv::Mat& clearance = {});
 
   const std::map<int, Zone>& zones() const { return zones_; }
   /// `from` becomes part of `into`; both must exist.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "segmentation/constriction.hpp"
 #include "segmentation/outline.hpp"
 
 namespace smokemap {
@@ -73,7 +74,7 @@ const PlanRegions* SketchReader::plan_regions(const std::shared_ptr<const Layout
       std::min(1.0, kPlanLongSidePx / std::max(layout->layout.width_px, layout->layout.height_px));
   const auto free_space = layout_free_space(layout->layout, plan.pixels_per_layout_px);
   if (!free_space) return nullptr;
-  auto segmentation = segment(*free_space, matching_segmentation_params());
+  auto segmentation = segment_by_constrictions(*free_space, matching_segmentation_params());
   if (!segmentation) return nullptr;
   plan.segmentation = std::move(*segmentation);
   plan.views = views_of(plan.segmentation, plan.pixels_per_layout_px);
@@ -100,7 +101,7 @@ SketchReading SketchReader::read(const SketchMap& sketch, const std::shared_ptr<
   if (!clean) return give_up(clean.error().message);
   view->gaps = clean->gaps;
   if (!clean->warnings.empty()) view->warning = clean->warnings.front();
-  const auto regions = segment(clean->free_space, matching_segmentation_params());
+  const auto regions = segment_by_constrictions(clean->free_space, matching_segmentation_params());
   if (!regions) return give_up(regions.error().message);
   view->regions = views_of(*regions, 1.0);
   if (!plan) return give_up(layout ? "no rooms were found on the plan" : "there is no plan to match the sketch with");

@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
   MatchParams params;
   if (method == "ursim") params.method = MatchMethod::kUrsim;
   if (method == "voronoi") params.method = MatchMethod::kVoronoi;
-  const SegmentationParams segmentation = matching_segmentation_params();
+  const ConstrictionParams segmentation = matching_segmentation_params();
   if (!data.empty()) {
     std::vector<bench::JudgedPair> judged;
     for (const char* set : {"KTH", "E5_on_08", "E5_on_10"}) {

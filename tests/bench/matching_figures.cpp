@@ -16,6 +16,7 @@
 
 #include "core/random.hpp"
 #include "matching/transfer.hpp"
+#include "segmentation/constriction.hpp"
 #include "segmentation/segment.hpp"
 #include "tests/support/plan_pictures.hpp"
 
@@ -193,11 +194,11 @@ std::vector<Point2> points_of(const nlohmann::json& list) {
   return points;
 }
 
-Result<Segmentation> read_and_segment(const std::string& path, const SegmentationParams& params) {
+Result<Segmentation> read_and_segment(const std::string& path, const ConstrictionParams& params) {
   const cv::Mat picture = cv::imread(path, cv::IMREAD_GRAYSCALE);
   const auto free_space = free_space_of_picture(picture);
   if (!free_space) return fail(free_space.error().code, path + ": " + free_space.error().message);
-  return segment(*free_space, params);
+  return segment_by_constrictions(*free_space, params);
 }
 
 cv::Mat read_labels(const std::string& path) {
@@ -277,7 +278,7 @@ PairFigures judge_answer(const JudgedPair& pair, const Matching& matching, const
 }
 
 Result<std::vector<JudgedPair>> read_judged_pairs(const std::string& folder, const std::string& set,
-                                                  const SegmentationParams& params) {
+                                                  const ConstrictionParams& params) {
   std::vector<std::filesystem::path> files;
   const std::filesystem::path where = std::filesystem::path(folder) / set / "gt";
   if (!std::filesystem::is_directory(where)) return fail(Errc::kNotFound, "there is no folder " + where.string());
@@ -313,7 +314,7 @@ Result<std::vector<JudgedPair>> read_judged_pairs(const std::string& folder, con
   return pairs;
 }
 
-std::vector<JudgedPair> generated_pairs(int count, std::uint64_t first_seed, const SegmentationParams& params) {
+std::vector<JudgedPair> generated_pairs(int count, std::uint64_t first_seed, const ConstrictionParams& params) {
   std::vector<JudgedPair> pairs;
   for (std::uint64_t seed = first_seed; static_cast<int>(pairs.size()) < count; ++seed) {
     std::mt19937_64 random(seed);
@@ -327,7 +328,8 @@ std::vector<JudgedPair> generated_pairs(int count, std::uint64_t first_seed, con
     habits.doors_forgotten = static_cast<int>(uniform_index(random, 3));
     habits.uneven = uniform(random, 0, 0.5);
     const test::PlanSketch sketch = test::sketch_of(plan, habits, random);
-    auto a = segment(sketch.picture.free_space, params), b = segment(plan.free_space, params);
+    auto a = segment_by_constrictions(sketch.picture.free_space, params);
+    auto b = segment_by_constrictions(plan.free_space, params);
     if (!a || !b) continue;
     JudgedPair pair{"generated",   std::to_string(seed), "truth",    std::move(*a),
                     std::move(*b), sketch.picture.rooms, plan.rooms, {}};

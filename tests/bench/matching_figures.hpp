@@ -10,7 +10,7 @@
 #include "geometry/pose2.hpp"
 #include "maps/segmentation.hpp"
 #include "matching/match.hpp"
-#include "segmentation/segment.hpp"
+#include "segmentation/constriction.hpp"
 
 namespace smokemap::bench {
 
@@ -52,10 +52,10 @@ PairFigures judge_answer(const JudgedPair& pair, const Matching& matching, const
 
 /// DIR/<set>/gt/*.json with label images, as in the folder's README; maps are segmented by our own default.
 Result<std::vector<JudgedPair>> read_judged_pairs(const std::string& folder, const std::string& set,
-                                                  const SegmentationParams& params);
+                                                  const ConstrictionParams& params);
 
 /// Sketches made from random buildings the way people draw, with exact truth, one for each seed from `first_seed` on.
-std::vector<JudgedPair> generated_pairs(int count, std::uint64_t first_seed, const SegmentationParams& params);
+std::vector<JudgedPair> generated_pairs(int count, std::uint64_t first_seed, const ConstrictionParams& params);
 
 /// The table of the matching part, one line a set, annotator and number of taps, with the reliability table below.
 void print_matching_figures(const std::vector<JudgedPair>& pairs, const std::vector<int>& taps,

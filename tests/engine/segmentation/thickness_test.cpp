@@ -70,6 +70,33 @@ TEST(LocalThickness, IsHalfTheWidthAllAlongACorridor) {
     for (int y = 10; y < 31; ++y) EXPECT_NEAR(thickness.at<float>(y, x), 11, 0.5);
 }
 
+TEST(FuzzyOpening, IsTheLargestDiscOverEachPixel) {
+  for (std::uint64_t seed = 10; seed < 13; ++seed) {
+    const cv::Mat clearance = clearance_image(random_rooms(seed)), fast = fuzzy_opening(clearance);
+    for (int y = 0; y < fast.rows; ++y)
+      for (int x = 0; x < fast.cols; ++x) {
+        float best = 0;
+        for (int v = 0; v < fast.rows; ++v)
+          for (int u = 0; u < fast.cols; ++u) {
+            const float radius = std::floor(clearance.at<float>(v, u));
+            if (radius >= 1 && std::hypot(u - x, v - y) <= radius - 1) best = std::max(best, radius);
+          }
+        ASSERT_EQ(fast.at<float>(y, x), best) << x << ' ' << y;
+      }
+  }
+}
+
+TEST(TypicalThickness, IsThatOfTheNarrowPartAndNotOfTheHall) {
+  cv::Mat map(300, 300, CV_8UC1, cv::Scalar(0));
+  map(cv::Rect(10, 10, 280, 21)).setTo(255);
+  map(cv::Rect(10, 40, 280, 21)).setTo(255);
+  const double narrow = typical_thickness(local_thickness(clearance_image(map)));
+  map(cv::Rect(100, 100, 150, 150)).setTo(255);
+  EXPECT_NEAR(narrow, 11, 0.5);
+  EXPECT_NEAR(typical_thickness(local_thickness(clearance_image(map))), narrow, 0.5);
+  EXPECT_EQ(typical_thickness(cv::Mat(4, 4, CV_32FC1, cv::Scalar(0))), 0);
+}
+
 TEST(WithoutIslands, PaintsOverSmallThingsAndLeavesWalls) {
   cv::Mat map(60, 60, CV_8UC1, cv::Scalar(255));
   map(cv::Rect(20, 20, 4, 4)).setTo(0);
