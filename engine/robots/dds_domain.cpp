@@ -10,7 +10,7 @@ namespace {
 constexpr const char* kLoopbackOnly =
     "<General><Interfaces><NetworkInterface name=\"lo\"/></Interfaces><AllowMulticast>false</AllowMulticast></General>"
     "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>60</MaxAutoParticipantIndex>"
-    "<Peers><Peer address=\"localhost\"/></Peers></Discovery>"
+    "<Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery>"
     "<Tracing><Verbosity>severe</Verbosity></Tracing>";
 
 constexpr int kHighestDomain = 230;  // above, ports of the 61st participant would pass 65535
