@@ -27,7 +27,7 @@ ConstrictionParams matching_segmentation_params();
 
 /// Splits free space where it grows narrow. The regions that matching was made on and measured with: it tells fewer
 /// rooms right than the default method (segment.hpp; robot maps 0.82 against 0.93) but parts sketches and robot maps
-/// more alike (KTH, room hit without taps 0.74 against 0.63).
+/// more alike (KTH, room hit without taps 0.74 against 0.60).
 ///
 /// The same promises, errors and cost as segment(); borders and regions do not say how sure they are.
 /// Source: local thickness and its steps are those of MAORIS (Mielle, Magnusson, Lilienthal, ICRA 2018); differs:
