@@ -80,8 +80,8 @@ cv::Mat free_clearance(const cv::Mat& free_space) {
   return distance(cv::Rect(1, 1, free_space.cols, free_space.rows)).clone();
 }
 
-cv::Mat thin_by_clearance(const cv::Mat& clearance, double min_clearance_px) {
-  cv::Mat line = clearance >= std::max(min_clearance_px, 1e-6);
+cv::Mat thin_by_clearance(const cv::Mat& clearance) {
+  cv::Mat line = clearance > 0;
   // The end of a line two pixels wide, as in an even corridor, has two neighbours once its twin is gone: such ends stay
   // until all lines are one pixel wide.
   thin(clearance, 2, line);

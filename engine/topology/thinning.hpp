@@ -10,6 +10,6 @@ cv::Mat free_clearance(const cv::Mat& free_space);
 /// One pixel wide middle lines of free space, connected where free space is (8 neighbours) and with a ring around every
 /// obstacle: pixels are taken away in the order of their clearance as long as that changes neither. Tips on ridges of
 /// the clearance stay. CV_8UC1, 255 = line.
-cv::Mat thin_by_clearance(const cv::Mat& clearance, double min_clearance_px);
+cv::Mat thin_by_clearance(const cv::Mat& clearance);
 
 }  // namespace smokemap
