@@ -18,6 +18,44 @@ void RobotLinkage::stop(const std::string& robot) {
   if (const auto here = gateway()) (void)here->stop(robot);
 }
 
+bool RobotLinkage::navigates(const std::string& robot) const {
+  const auto here = gateway();
+  if (!here) return false;
+  for (const RobotLink& link : here->robots())
+    if (link.id == robot) return link.navigates || (link.takes_goals && !link.takes_velocity);
+  return false;
+}
+
+void RobotLinkage::lead(const std::string& robot, const Pose2& T_robot_place) {
+  const auto here = gateway();
+  if (!here) return;
+  const auto sent = here->send_goal_ahead(robot, T_robot_place);
+  if (!sent) spdlog::warn("robot {}: {}", robot, sent.error().message);
+  const std::lock_guard lock(mutex_);
+  Given& given = given_[robot];
+  // A report may have overtaken us: it is never older than what it is about.
+  if (!sent)
+    given = {0, Errand::kGivenUp};
+  else if (given.number < sent->number)
+    given = {sent->number, Errand::kUnderWay};
+}
+
+Errand RobotLinkage::errand(const std::string& robot) const {
+  const std::lock_guard lock(mutex_);
+  const auto given = given_.find(robot);
+  return given == given_.end() ? Errand::kNone : given->second.errand;
+}
+
+void RobotLinkage::heard(const NavigationReport& report) {
+  const std::lock_guard lock(mutex_);
+  Given& given = given_[report.robot];
+  if (report.goal < given.number) return;  // of a goal that another one has replaced
+  given.number = report.goal;
+  given.errand = !is_final(report.state)                     ? Errand::kUnderWay
+                 : report.state == NavigationState::kArrived ? Errand::kDone
+                                                             : Errand::kGivenUp;
+}
+
 Result<Ok> RobotLinkage::open(const GatewayParams& params, Engine& engine, std::shared_ptr<const Clock> clock,
                               LiveRecorder* recorder) {
   const auto record = [recorder, clock](const LogItem& item) {
@@ -30,7 +68,8 @@ Result<Ok> RobotLinkage::open(const GatewayParams& params, Engine& engine, std::
   };
   callbacks.on_sweep = [&engine, record](const RadarSweep& sweep) { engine.add_sweep(sweep), record(sweep); };
   callbacks.on_alarm = [](const GatewayAlarm& alarm) { spdlog::warn("robot {}: {}", alarm.robot, alarm.text); };
-  callbacks.on_navigation = [](const NavigationReport& report) {
+  callbacks.on_navigation = [this](const NavigationReport& report) {
+    heard(report);
     spdlog::info("robot {}: goal {} {}", report.robot, report.goal, to_string(report.state));
   };
   auto gateway = RobotGateway::open(params, std::move(callbacks), std::move(clock));

@@ -7,22 +7,6 @@
 #include "geometry/segment2.hpp"
 
 namespace smokemap {
-namespace {
-
-/// The point `ahead_m` further along the path than the foot of `p`.
-Point2 point_ahead(const Path& path, const Point2& p, double ahead_m) {
-  const PathProgress at = progress_on(path, p);
-  Point2 from = closest_point({path.points[at.piece], path.points[at.piece + 1]}, p);
-  for (std::size_t i = at.piece + 1; i < path.points.size(); ++i) {
-    const double length = (path.points[i] - from).norm();
-    if (length >= ahead_m) return from + ahead_m / length * (path.points[i] - from);
-    ahead_m -= length;
-    from = path.points[i];
-  }
-  return path.points.back();
-}
-
-}  // namespace
 
 Result<Ok> FollowerParams::validate() const {
   return ParamCheck("FollowerParams")
@@ -51,9 +35,25 @@ PathProgress progress_on(const Path& path, const Point2& p) {
   return best;
 }
 
+Pose2 pose_ahead(const Path& path, const Point2& p, double ahead_m) {
+  const PathProgress at = progress_on(path, p);
+  Point2 from = closest_point({path.points[at.piece], path.points[at.piece + 1]}, p);
+  double heading = Segment2{path.points[at.piece], path.points[at.piece + 1]}.heading();
+  for (std::size_t i = at.piece + 1; i < path.points.size(); ++i) {
+    const Point2 piece = path.points[i] - from;
+    const double length = piece.norm();
+    if (length > 0) heading = Segment2{from, path.points[i]}.heading();
+    if (length > 0 && length >= ahead_m) return Pose2(from + ahead_m / length * piece, heading);
+    ahead_m -= length;
+    from = path.points[i];
+  }
+  return Pose2(path.points.back(), heading);
+}
+
 Twist follow(const Path& path, const Pose2& T_map_robot, const FollowerParams& params) {
   const double remaining = progress_on(path, T_map_robot.translation()).remaining_m;
-  const Point2 ahead = T_map_robot.inverse() * point_ahead(path, T_map_robot.translation(), params.lookahead_m);
+  const Point2 ahead =
+      T_map_robot.inverse() * pose_ahead(path, T_map_robot.translation(), params.lookahead_m).translation();
   const double error = std::atan2(ahead.y(), ahead.x());
   const double turn = std::clamp(2.0 * error, -params.max_turn_rate_radps, params.max_turn_rate_radps);
   if (std::abs(error) > params.turn_in_place_rad) return {0, turn};

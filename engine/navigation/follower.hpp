@@ -32,6 +32,8 @@ struct PathProgress {
   double off_path_m = 0;
 };
 PathProgress progress_on(const Path& path, const Point2& p);
+/// The place `ahead_m` further along the path than the foot of `p`, facing along it; its end where it is shorter.
+Pose2 pose_ahead(const Path& path, const Point2& p, double ahead_m);
 
 /// Pure pursuit: drives towards a point a little ahead on the path, slows for turns and at the end.
 Twist follow(const Path& path, const Pose2& T_map_robot, const FollowerParams& params);

@@ -27,6 +27,7 @@ Result<Ok> PilotParams::validate() const {
       .positive("arrival_rad", arrival_rad)
       .positive("replan_period_s", replan_period_s)
       .positive("patience_s", patience_s)
+      .positive("watch_patience_s", watch_patience_s)
       .positive("back_up_after_s", back_up_after_s)
       .in_range("back_up_speed_mps", back_up_speed_mps, 0, 1)
       .result();
@@ -107,6 +108,12 @@ PilotOutput Pilot::turn_to_heading(const Pose2& T_map_robot) const {
 }
 
 PilotOutput Pilot::step(Stamp now, const Pose2& T_map_robot, const std::vector<Point2>& obstacles_robot) {
+  return advance(now, T_map_robot, &obstacles_robot);
+}
+
+PilotOutput Pilot::watch(Stamp now, const Pose2& T_map_robot) { return advance(now, T_map_robot, nullptr); }
+
+PilotOutput Pilot::advance(Stamp now, const Pose2& T_map_robot, const std::vector<Point2>* obstacles_robot) {
   PilotOutput out;
   if (!target_) return out;
   if (given_up_) {
@@ -120,13 +127,14 @@ PilotOutput Pilot::step(Stamp now, const Pose2& T_map_robot, const std::vector<P
     out.path = *path_;
     out.remaining_m = progress_on(*path_, T_map_robot.translation()).remaining_m;
     if (out.remaining_m < least_remaining_m_ - kProgressM) least_remaining_m_ = out.remaining_m, progressed_at_ = now;
-    out.twist = drive(now, T_map_robot, obstacles_robot);
+    if (obstacles_robot) out.twist = drive(now, T_map_robot, *obstacles_robot);
   }
   out.state = path_ && !blocked_since_ ? PilotState::kDriving : PilotState::kBlocked;
   out.reason = reason_;
-  if (to_seconds(now - progressed_at_) > params_.patience_s) {
+  const double patience_s = obstacles_robot ? params_.patience_s : params_.watch_patience_s;
+  if (to_seconds(now - progressed_at_) > patience_s) {
     given_up_ = true;
-    if (reason_.empty()) reason_ = "no progress for " + std::to_string(static_cast<int>(params_.patience_s)) + " s";
+    if (reason_.empty()) reason_ = "no progress for " + std::to_string(static_cast<int>(patience_s)) + " s";
     out.state = PilotState::kGivenUp, out.reason = reason_, out.twist = {};
   }
   return out;

@@ -25,6 +25,7 @@ struct PilotParams {
   double arrival_rad = 0.2;  ///< only where a heading was asked for
   double replan_period_s = 1.0;
   double patience_s = 12.0;      ///< without progress
+  double watch_patience_s = 60;  ///< the same where the robot's own navigator drives: it frees itself in its own time
   double back_up_after_s = 3.0;  ///< of being blocked
   double back_up_speed_mps = 0.15;
   Result<Ok> validate() const;
@@ -53,8 +54,14 @@ class Pilot {
 
   /// @param obstacles_robot echoes of the latest scan, robot frame
   PilotOutput step(Stamp now, const Pose2& T_map_robot, const std::vector<Point2>& obstacles_robot);
+  /// The same while somebody else drives: path, progress and arrival, no velocities.
+  PilotOutput watch(Stamp now, const Pose2& T_map_robot);
+  void give_up(const std::string& reason) { given_up_ = true, reason_ = reason; }
+  const std::optional<double>& heading_rad() const { return heading_rad_; }
 
  private:
+  /// @param obstacles_robot null: somebody else drives
+  PilotOutput advance(Stamp now, const Pose2& T_map_robot, const std::vector<Point2>* obstacles_robot);
   bool at_target(const Pose2& T_map_robot) const;
   void plan_if_due(Stamp now, const Point2& p);
   Twist drive(Stamp now, const Pose2& T_map_robot, const std::vector<Point2>& obstacles_robot);

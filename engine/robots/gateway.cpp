@@ -56,7 +56,10 @@ class RobotGateway::Impl {
     watch_discovery(subscriptions_, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, false);
     thread_.start();
   }
-  ~Impl() { thread_.stop(); }
+  ~Impl() {
+    thread_.stop();
+    shown_.clear();  // navigators take their leave of the thread, which goes first of all members
+  }
 
   std::vector<RobotLink> robots() const {
     const std::lock_guard lock(mutex_);
@@ -96,6 +99,20 @@ class RobotGateway::Impl {
     const auto followed = shown->second.commander.send_goal(number, {T_frame_goal, frame}, clock_->now());
     if (!followed) return followed.error();
     return SentGoal{number, *followed};
+  }
+
+  Result<SentGoal> send_goal_ahead(const std::string& robot, const Pose2& T_robot_goal) {
+    Pose2 T_odom_goal;
+    std::string frame;
+    {
+      const std::lock_guard lock(mutex_);
+      const auto shown = shown_.find(robot);
+      if (shown == shown_.end() || shown->second.link.odom_frame.empty())
+        return fail(Errc::kNotFound, robot + " has not said where it is by its odometry");
+      T_odom_goal = shown->second.link.T_odom_robot * T_robot_goal;
+      frame = shown->second.link.odom_frame;
+    }
+    return send_goal(robot, T_odom_goal, frame);
   }
 
   Result<Ok> stop(const std::string& robot) {
@@ -279,7 +296,8 @@ class RobotGateway::Impl {
   void on_odometry(Robot& robot, const std::string&, const RosOdometryMsg& message) {
     auto odometry = to_odometry(message);
     if (!odometry) return robot.intake.drop(odometry.error().message);
-    robot.intake.odometry(std::move(*odometry), text_of(message.child_frame_id), clock_->now());
+    robot.intake.odometry(std::move(*odometry), text_of(message.header.frame_id), text_of(message.child_frame_id),
+                          clock_->now());
   }
 
   void on_radar(Robot& robot, const std::string&, const RosImageMsg& message) {
@@ -296,7 +314,8 @@ class RobotGateway::Impl {
       if (!odometry)
         robot.intake.drop(odometry.error().message);
       else
-        robot.intake.odometry(std::move(*odometry), text_of(transform.child_frame_id), clock_->now());
+        robot.intake.odometry(std::move(*odometry), text_of(transform.header.frame_id),
+                              text_of(transform.child_frame_id), clock_->now());
     }
   }
 
@@ -371,6 +390,9 @@ Result<Ok> RobotGateway::drive(const std::string& robot, double speed_mps, doubl
 Result<SentGoal> RobotGateway::send_goal(const std::string& robot, const Pose2& T_frame_goal,
                                          const std::string& frame_id) {
   return impl_->send_goal(robot, T_frame_goal, frame_id);
+}
+Result<SentGoal> RobotGateway::send_goal_ahead(const std::string& robot, const Pose2& T_robot_goal) {
+  return impl_->send_goal_ahead(robot, T_robot_goal);
 }
 Result<Ok> RobotGateway::stop(const std::string& robot) { return impl_->stop(robot); }
 

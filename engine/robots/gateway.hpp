@@ -44,6 +44,8 @@ struct RobotLink {
   bool takes_velocity = false;  ///< somebody subscribes its cmd_vel
   bool takes_goals = false;     ///< it offers NavigateToPose, or somebody subscribes its goal_pose
   bool navigates = false;       ///< it offers NavigateToPose: goals are followed to their end and can be called off
+  std::string odom_frame;       ///< of its odometry; empty before it said anything
+  Pose2 T_odom_robot;           ///< the latest
   std::size_t scans = 0, sweeps = 0, odometry_readings = 0;
   std::map<std::string, std::size_t> dropped;  ///< reason -> count
 };
@@ -90,6 +92,9 @@ class RobotGateway {
   Result<Ok> drive(const std::string& robot, double speed_mps, double turn_rate_radps);
   /// Pose in the robot's frame `frame_id`. A robot that navigates gives up an earlier goal for it.
   Result<SentGoal> send_goal(const std::string& robot, const Pose2& T_frame_goal, const std::string& frame_id = "map");
+  /// A place as seen from where the robot is now. Sent in the frame of its odometry, which every navigator can
+  /// transform and which does not jump when a map is corrected. kNotFound before it published odometry.
+  Result<SentGoal> send_goal_ahead(const std::string& robot, const Pose2& T_robot_goal);
   /// Emergency: zero velocity, and every goal of its navigator is called off, whoever sent it. kNotFound when there is
   /// neither to speak to.
   Result<Ok> stop(const std::string& robot);

@@ -32,10 +32,12 @@ void RobotIntake::sweep(RadarSweep sweep, const std::string& frame, Stamp now) {
   place_or_wait({std::move(sweep), frame, now});
 }
 
-void RobotIntake::odometry(Odometry odometry, const std::string& base_frame, Stamp now) {
+void RobotIntake::odometry(Odometry odometry, const std::string& odom_frame, const std::string& base_frame, Stamp now) {
   link_.last_heard = now;
   odometry.robot = robot_;
   base_frame_ = base_frame;
+  link_.odom_frame = odom_frame;
+  link_.T_odom_robot = odometry.T_odom_robot;
   ++link_.odometry_readings;
   if (callbacks_.on_odometry) callbacks_.on_odometry(odometry);
 }

@@ -26,7 +26,7 @@ class RobotIntake {
 
   void scan(LaserScan scan, const std::string& frame, Stamp now);
   void sweep(RadarSweep sweep, const std::string& frame, Stamp now);
-  void odometry(Odometry odometry, const std::string& base_frame, Stamp now);
+  void odometry(Odometry odometry, const std::string& odom_frame, const std::string& base_frame, Stamp now);
   void drop(const std::string& reason) { ++link_.dropped[reason]; }
 
   FrameTree& own_frames() { return own_frames_; }

@@ -15,6 +15,7 @@ constexpr int kRobotOutline = 36;     // points on its circle: every 6 cm
 
 Result<Ok> FleetParams::validate() const {
   if (const auto valid = pilot.validate(); !valid) return valid.error();
+  if (const auto valid = leader.validate(); !valid) return valid.error();
   return ParamCheck("FleetParams")
       .positive("stale_after_s", stale_after_s)
       .in_range("lost_after_s", lost_after_s, stale_after_s, 3600)
@@ -24,9 +25,7 @@ Result<Ok> FleetParams::validate() const {
       .result();
 }
 
-Fleet::Robot& Fleet::robot_of(const std::string& id) {
-  return robots_.try_emplace(id, id, params_.pilot).first->second;
-}
+Fleet::Robot& Fleet::robot_of(const std::string& id) { return robots_.try_emplace(id, id, params_).first->second; }
 
 void Fleet::heard(const std::string& robot, Stamp now) { robot_of(robot).status.last_heard = now; }
 
@@ -71,6 +70,7 @@ void Fleet::steer(Robot& robot, Stamp now, Whiteboard& board, const Carrier& car
   robot.last = {};
   status.note.clear();
   if (status.stopped) {
+    robot.leader.reset();
     commands_->drive(status.id, 0, 0);
     status.note = "emergency stop";
     return;
@@ -86,8 +86,7 @@ void Fleet::steer(Robot& robot, Stamp now, Whiteboard& board, const Carrier& car
   robot.pilot.set_map(map_);
   Goal* goal = next_goal(robot, board, carrier);
   take_target(robot, now, goal, carrier, status.exploring);
-  robot.last = robot.pilot.step(now, status.T_map_robot, obstacles_of(robot));
-  commands_->drive(status.id, robot.last.twist.speed_mps, robot.last.twist.turn_rate_radps);
+  commands_->navigates(status.id) ? lead(robot, now) : drive(robot, now);
   settle_goal(robot, now, goal, carrier);
   status.path_map = robot.last.path.points;
   if (status.note.empty()) status.note = robot.last.reason;
@@ -97,6 +96,30 @@ void Fleet::steer(Robot& robot, Stamp now, Whiteboard& board, const Carrier& car
     robot.pilot.set_target(std::nullopt);
     robot.idle_since = now;
   }
+}
+
+void Fleet::drive(Robot& robot, Stamp now) {
+  robot.last = robot.pilot.step(now, robot.status.T_map_robot, obstacles_of(robot));
+  commands_->drive(robot.status.id, robot.last.twist.speed_mps, robot.last.twist.turn_rate_radps);
+}
+
+void Fleet::lead(Robot& robot, Stamp now) {
+  const RobotStatus& status = robot.status;
+  robot.last = robot.pilot.watch(now, status.T_map_robot);
+  const bool has_way = robot.last.state == PilotState::kDriving && !robot.last.path.points.empty();
+  if (has_way) {
+    if (const auto place = robot.leader.next(robot.last.path, status.T_map_robot, robot.pilot.heading_rad(),
+                                             commands_->errand(status.id)))
+      commands_->lead(status.id, status.T_map_robot.inverse() * *place);
+    if (!robot.leader.gave_up()) return;
+    robot.last.state = PilotState::kGivenUp;
+    robot.last.reason = "the robot's own navigator does not get there";
+    robot.pilot.give_up(robot.last.reason);
+  } else if (robot.last.state == PilotState::kDriving) {
+    return;  // it stands at the place and turns
+  }
+  if (robot.leader.leads()) commands_->stop(status.id);
+  robot.leader.reset();
 }
 
 std::vector<Point2> Fleet::avoided_by(const Robot& robot) const {

@@ -7,6 +7,7 @@
 
 #include "core/time.hpp"
 #include "navigation/frontier.hpp"
+#include "navigation/leader.hpp"
 #include "navigation/pilot.hpp"
 #include "session/carrier.hpp"
 #include "session/snapshot.hpp"
@@ -22,11 +23,19 @@ class RobotCommands {
   virtual void drive(const std::string& robot, double speed_mps, double turn_rate_radps) = 0;
   /// Emergency: stands at once, and whatever the robot does of its own accord is called off.
   virtual void stop(const std::string& robot) { drive(robot, 0, 0); }
+  /// Whether the robot has a navigator of its own: it is then led from place to place and given no velocities, which
+  /// would fight the navigator's.
+  virtual bool navigates(const std::string& /*robot*/) const { return false; }
+  /// To a place as seen from where the robot is now.
+  virtual void lead(const std::string& /*robot*/, const Pose2& /*T_robot_place*/) {}
+  /// What became of the place that it was led to last.
+  virtual Errand errand(const std::string& /*robot*/) const { return Errand::kNone; }
 };
 
 struct FleetParams {
   PilotParams pilot;
   FrontierParams frontier;
+  LeaderParams leader;
   double stale_after_s = 1.0;
   double lost_after_s = 5.0;
   double look_again_s = 2.0;     ///< between two searches for a way that was not known
@@ -71,9 +80,12 @@ class Fleet {
 
  private:
   struct Robot {
-    Robot(const std::string& id, const PilotParams& params) : pilot(params) { status.id = id; }
+    Robot(const std::string& id, const FleetParams& params) : pilot(params.pilot), leader(params.leader) {
+      status.id = id;
+    }
     RobotStatus status;
     Pilot pilot;
+    Leader leader;  ///< of a robot that navigates by itself
     Pose2 T_graph_robot;
     Pose2 T_map_graph;
     std::vector<Point2> obstacles_robot;
@@ -87,6 +99,9 @@ class Fleet {
   };
 
   void steer(Robot& robot, Stamp now, Whiteboard& board, const Carrier& carrier);
+  void drive(Robot& robot, Stamp now);
+  /// The same for a robot that navigates by itself.
+  void lead(Robot& robot, Stamp now);
   /// The goal to drive to now; refuses, with the reason, those that have no place.
   Goal* next_goal(Robot& robot, Whiteboard& board, const Carrier& carrier);
   /// Frontiers that this robot gave up or saw, and those that others drive to.

@@ -29,12 +29,10 @@ describe('for every hand and every eye', { timeout: 150_000 }, () => {
         const anna = await Tablet.open(browser, server.url, { colorScheme, viewport });
         await anna.page.evaluate(axe);
         const findings = [];
-        for (const mode of kModes) {
-          await anna.mode(mode);
-          if (mode === 'Operate') await anna.page.click('button.where >> nth=0');
+        for await (const view of views(anna)) {
           const { violations } = await anna.page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
           for (const { id, impact, nodes } of violations)
-            if (impact === 'serious' || impact === 'critical') findings.push(`${mode}: ${id}: ${nodes.map(({ html, any }) => `${html.slice(0, 110)} ${any[0]?.message ?? ''}`).slice(0, 4).join(' | ')}`);
+            if (impact === 'serious' || impact === 'critical') findings.push(`${view}: ${id}: ${nodes.map(({ html, any }) => `${html.slice(0, 110)} ${any[0]?.message ?? ''}`).slice(0, 4).join(' | ')}`);
         }
         await anna.close();
         assert.deepEqual(findings, []);
@@ -45,14 +43,43 @@ describe('for every hand and every eye', { timeout: 150_000 }, () => {
       const anna = await Tablet.open(browser, server.url);
       if (hands === 'gloved') await anna.page.click('[aria-label^="Gloves"]');
       const small = [];
-      for (const mode of kModes) {
-        await anna.mode(mode);
-        small.push(...(await anna.page.evaluate(tooSmall, least)).map((what) => `${mode}: ${what}`));
-      }
+      for await (const view of views(anna)) small.push(...(await anna.page.evaluate(tooSmall, least)).map((what) => `${view}: ${what}`));
       await anna.close();
       assert.deepEqual(small, []);
     });
 });
+
+/** Every mode, and every card that a tap opens in it, one after the other. */
+async function* views(anna) {
+  const dialog = (words) => anna.page.click(`[role=dialog] >> text=${words}`);
+  const opened = () => anna.page.waitForSelector('[role=dialog]');
+  for (const mode of kModes) {
+    await anna.mode(mode);
+    yield mode;
+  }
+  await anna.mode('Prepare');
+  for (const step of await anna.page.locator('button.head').all()) {
+    await step.click();
+    yield `Prepare: ${await step.textContent()}`;
+  }
+  await anna.mode('Operate');
+  await anna.page.click('button.where >> nth=0');
+  yield 'a mark';
+  const [free, onWall] = [[27, 9.5], [4, 8]];
+  for (const [name, words] of Object.entries({ 'what kind of mark': 'Mark', 'a goal': 'Send robot', 'a fixed point': 'Fix the plan here', 'a distance': 'Measure' })) {
+    await anna.tap(free);
+    await opened();
+    if (name === 'what kind of mark') yield 'a place';
+    await dialog(words);
+    yield name;
+    await anna.page.keyboard.press('Escape');
+  }
+  await anna.tap(onWall);
+  await opened();
+  await dialog('Judge the wall');
+  yield 'a wall';
+  await anna.page.keyboard.press('Escape');
+}
 
 /** Controls that are shown and smaller than `least`; a label around an input counts as the input. */
 function tooSmall(least) {

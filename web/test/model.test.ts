@@ -1,6 +1,7 @@
 import { deflateRawSync } from 'node:zlib';
 import { describe, expect, test } from 'vitest';
 import { matchRows, levelOf, regionAt, relink, unrelink } from '../src/model/matches';
+import { parseMetres } from '../src/model/metres';
 import { isReflected, withPending } from '../src/model/pending';
 import { addWall, countWalls, documentOf, draftFrom, toggleWall, wallAt, withScale } from '../src/model/plan_draft';
 import { formatAge, formatMetres, linkWord, localisationQuality, sortGoals } from '../src/model/status';
@@ -245,4 +246,12 @@ describe('words for numbers', () => {
     const goals = new Map([['a', goal('arrived', 1)], ['b', goal('driving', 5)], ['c', goal('queued', 4)], ['d', goal('failed', 3)]]);
     expect(sortGoals(goals).map(({ id }) => id)).toEqual(['c', 'b', 'd', 'a']);
   });
+});
+
+describe('a length as people type it', () => {
+  test.each([['4.2', 4.2], ['4,2', 4.2], [' 4,25 m ', 4.25], ['12', 12], ['.5', 0.5], ['7.', 7], ['0.1', 0.1], ['500M', 500]])('%s', (text, metres) =>
+    expect(parseMetres(text)).toBeCloseTo(metres, 9));
+
+  test.each(['', ' ', 'm', 'four', '-4', '0', '0.05', '501', '1e2', '4.2.1', '4 2', 'NaN', 'Infinity', '0x10', '4 cm', '٤'])('"%s" is none', (text) =>
+    expect(parseMetres(text)).toBeNull());
 });

@@ -68,7 +68,7 @@ TEST_F(Intake, MeasuresFromTheFrameThatOdometryMoves) {
   shared.set("footprint", "base_link", {0, 0, 0.1}, turned(0));
   shared.set("base_link", "laser", {0.3, 0, 0}, turned(0));
   shared.set("footprint", "elsewhere", {5, 5, 0}, turned(0));
-  intake.odometry({1, "", Pose2(), 0, 0}, "elsewhere", kNow);
+  intake.odometry({1, "", Pose2(), 0, 0}, "odom", "elsewhere", kNow);
   intake.frames_changed(shared, kNow);
   intake.scan(plain_scan(1), "laser", kNow);
   ASSERT_EQ(scans.size(), 1u);

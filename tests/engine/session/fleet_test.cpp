@@ -143,6 +143,86 @@ TEST(Fleet, LinksGetOldByTheClockAlone) {
   EXPECT_EQ(after(5.1), LinkQuality::kLost);
 }
 
+/// A robot that drives to where it is led in a straight line.
+struct Navigator : Pair {
+  explicit Navigator(const Pose2& at) : Pair({{"robot1", at}}) { recorder->errands["robot1"] = Errand::kNone; }
+  Pose2& pose() { return poses.at("robot1"); }
+  void step_and_drive() {
+    step();
+    const std::vector<Pose2>& told = recorder->places["robot1"];
+    if (told.size() > heard_) T_map_wanted_ = pose() * told.back(), heard_ = told.size();
+    if (!T_map_wanted_) return;
+    const Point2 way = T_map_wanted_->translation() - pose().translation();
+    const double length = way.norm();
+    if (length > 0.05)
+      pose() = Pose2(pose().translation() + std::min(0.05, length) / length * way, std::atan2(way.y(), way.x()));
+    else
+      pose() = *T_map_wanted_, recorder->errands["robot1"] = Errand::kDone;
+  }
+  const Pose2& wanted() const { return *T_map_wanted_; }
+
+ private:
+  std::optional<Pose2> T_map_wanted_;
+  std::size_t heard_ = 0;
+};
+
+TEST(Fleet, ARobotWithItsOwnNavigatorIsLedAndGivenNoVelocities) {
+  Navigator robot(Pose2(-3, 0, 2));
+  SetGoal set = goal_at("g", {4, 0});
+  set.goal.heading_rad = 1.0;
+  ASSERT_THAT(robot.board.apply(set), test::IsOk());
+  for (int i = 0; i < 400 && !is_final(robot.board.find_goal("g")->state); ++i) {
+    robot.step_and_drive();
+    EXPECT_EQ(robot.recorder->last["robot1"].speed_mps, 0);
+  }
+  EXPECT_EQ(robot.board.find_goal("g")->state, GoalState::kArrived);
+  EXPECT_LT((robot.pose().translation() - Point2(4, 0)).norm(), 0.3);
+  EXPECT_NEAR(robot.pose().heading(), 1.0, 0.2) << "stands as it was asked to";
+  EXPECT_LE(robot.recorder->places["robot1"].size(), 5U) << "not a new place with every tick";
+}
+
+TEST(Fleet, AnotherGoalOrNoneReachesTheNavigatorToo) {
+  Navigator robot{Pose2()};
+  ASSERT_THAT(robot.board.apply(goal_at("g", {4, 0})), test::IsOk());
+  for (int i = 0; i < 10; ++i) robot.step_and_drive();
+  ASSERT_EQ(robot.board.find_goal("g")->state, GoalState::kDriving);
+  ASSERT_THAT(robot.board.apply(CancelGoal{"g"}), test::IsOk());
+  robot.step_and_drive();
+  EXPECT_EQ(robot.recorder->stops["robot1"], 1) << "called off, once";
+  ASSERT_THAT(robot.board.apply(goal_at("h", {0, 4})), test::IsOk());
+  for (int i = 0; i < 5; ++i) robot.step_and_drive();
+  EXPECT_GT(robot.wanted().y(), 3);
+}
+
+TEST(Fleet, AfterAnEmergencyStopTheNavigatorIsToldAgain) {
+  Navigator robot{Pose2()};
+  ASSERT_THAT(robot.board.apply(goal_at("g", {4, 0})), test::IsOk());
+  for (int i = 0; i < 5; ++i) robot.step_and_drive();
+  const std::size_t told = robot.recorder->places["robot1"].size();
+  ASSERT_THAT(robot.board.apply(EmergencyStop{"", true}), test::IsOk());
+  robot.step(5);
+  EXPECT_EQ(robot.recorder->places["robot1"].size(), told);
+  ASSERT_THAT(robot.board.apply(EmergencyStop{"", false}), test::IsOk());
+  robot.recorder->errands["robot1"] = Errand::kGivenUp;  // the stop called it off
+  robot.step(2);
+  EXPECT_EQ(robot.recorder->places["robot1"].size(), told + 1);
+  EXPECT_FALSE(is_final(robot.board.find_goal("g")->state));
+}
+
+TEST(Fleet, AGoalThatTheNavigatorDoesNotReachFailsWithTheReason) {
+  Navigator robot{Pose2()};
+  ASSERT_THAT(robot.board.apply(goal_at("g", {4, 0})), test::IsOk());
+  for (int i = 0; i < 20; ++i) {
+    robot.step();
+    if (robot.recorder->errands["robot1"] == Errand::kUnderWay) robot.recorder->errands["robot1"] = Errand::kGivenUp;
+  }
+  const Goal& goal = *robot.board.find_goal("g");
+  EXPECT_TRUE(is_final(goal.state));
+  EXPECT_NE(goal.state, GoalState::kArrived);
+  EXPECT_EQ(goal.reason, "the robot's own navigator does not get there");
+  EXPECT_EQ(robot.recorder->places["robot1"].size(), 4U);
+}
+
 TEST(FleetParams, NameTheirFirstFieldOutOfRange) {
   FleetParams params;
   params.lost_after_s = 0.5 * params.stale_after_s;

@@ -49,7 +49,21 @@ class Recorder final : public RobotCommands {
     last[robot] = {speed_mps, turn_rate_radps};
     ++calls;
   }
+  void stop(const std::string& robot) override {
+    drive(robot, 0, 0);
+    ++stops[robot];
+  }
+  bool navigates(const std::string& robot) const override { return errands.contains(robot); }
+  void lead(const std::string& robot, const Pose2& T_robot_place) override {
+    places[robot].push_back(T_robot_place);
+    errands[robot] = Errand::kUnderWay;
+  }
+  Errand errand(const std::string& robot) const override { return errands.at(robot); }
+
   std::map<std::string, Twist> last;
+  std::map<std::string, int> stops;
+  std::map<std::string, Errand> errands;  ///< of the robots that navigate by themselves
+  std::map<std::string, std::vector<Pose2>> places;
   int calls = 0;
 };
 

@@ -65,6 +65,7 @@ export const de: Readonly<Record<Key, string>> = {
   'view.fit': 'Alles zeigen',
   'view.closer': 'Näher',
   'view.farther': 'Weiter weg',
+  'metres.wanted': 'Eine Länge von 0,1 bis 500 Metern eingeben.',
   'map.canvas': 'Gemeinsame Karte',
 
   'quality.good': 'gut',

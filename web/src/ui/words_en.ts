@@ -63,6 +63,7 @@ export const en = {
   'view.fit': 'Show everything',
   'view.closer': 'Closer',
   'view.farther': 'Farther',
+  'metres.wanted': 'Type a length from 0.1 to 500 metres.',
   'map.canvas': 'Merged map',
 
   'quality.good': 'good',
