@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import { snapAngle, wrapAngle } from '../src/geometry/angle';
 import { boundsOf, isEmpty, kNoBounds } from '../src/geometry/bounds';
-import { moveView, zoomAbout } from '../src/geometry/gesture';
+import { moveView, uncovered, zoomAbout } from '../src/geometry/gesture';
 import { mapToPlan, type PlanMesh, planToMap, triangleAffine } from '../src/geometry/mesh';
 import { distance, layoutPx, mapPoint, pixelToView, screenPoint, viewPoint, viewToLayout, type Xy } from '../src/geometry/points';
 import { centroid, contains, interiorPoint, signedArea } from '../src/geometry/polygon';
@@ -111,6 +111,24 @@ describe('gestures', () => {
     const closer = zoomAbout(view, at, 1e9, size, limits);
     expect(closer.resolution).toBe(limits.minResolution);
     near(toView(closer, size, at), toView(view, size, at), 1e-6);
+  });
+  test('what a card covers comes out just above it, and nothing else moves', () => {
+    const random = randomSource(8);
+    const card = { left: 100, right: 720, top: 500, bottom: 730 };
+    for (let i = 0; i < 200; i++) {
+      const view = randomView(random);
+      const at = screenPoint(between(random, 0, size.width), between(random, 0, size.height));
+      const p = toView(view, size, at);
+      const after = uncovered(view, size, p, card, 56);
+      const isCovered = at[0] > 44 && at[0] < 776 && at[1] > 444 && at[1] < 730;
+      near(toScreen(after, size, p), isCovered ? screenPoint(at[0], 444) : at, 1e-5);
+      expect(after.resolution).toBe(view.resolution);
+      expect(after.rotation).toBeCloseTo(view.rotation, 12);
+    }
+  });
+  test('a card that covers nearly everything moves nothing', () => {
+    const view = randomView(randomSource(9));
+    expect(uncovered(view, size, view.center, { left: 0, right: 1180, top: 90, bottom: 800 }, 56)).toEqual(view);
   });
 });
 

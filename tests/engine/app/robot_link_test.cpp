@@ -48,6 +48,19 @@ struct Site {
     }
     node->publish(scan);
   }
+  /// As soon as the robot knows where it is and its navigator was found.
+  void send_to(const Point2& p_map) {
+    ASSERT_TRUE(eventually([&] {
+      measure();
+      const auto status = fox();
+      return status && status->localized && links->navigates("fox");
+    }));
+    SetGoal set;
+    set.goal.id = "g";
+    set.goal.robot = "fox";
+    set.goal.place = {PlaceFrame::kMap, p_map, 0};
+    ASSERT_THAT(engine.apply(set), test::IsOk());
+  }
   std::optional<RobotStatus> fox() const {
     for (const RobotStatus& robot : engine.snapshot()->robots)
       if (robot.id == "fox") return robot;
@@ -78,16 +91,7 @@ struct Site {
 
 TEST(RobotLinkage, LeadsARobotByItsOwnNavigatorInTheFrameOfItsOdometry) {
   Site site;
-  ASSERT_TRUE(eventually([&] {
-    site.measure();
-    const auto fox = site.fox();
-    return fox && fox->localized && site.links->navigates("fox");
-  }));
-  SetGoal set;
-  set.goal.id = "g";
-  set.goal.robot = "fox";
-  set.goal.place = {PlaceFrame::kMap, Point2(2.5, 1), 0};
-  ASSERT_THAT(site.engine.apply(set), test::IsOk());
+  site.send_to(Point2(2.5, 1));
   ASSERT_TRUE(eventually([&] {
     site.measure();
     return !site.navigator.goals.all().empty();
@@ -113,16 +117,7 @@ TEST(RobotLinkage, LeadsARobotByItsOwnNavigatorInTheFrameOfItsOdometry) {
 
 TEST(RobotLinkage, ANavigatorThatRefusesEverythingEndsTheGoal) {
   Site site;
-  ASSERT_TRUE(eventually([&] {
-    site.measure();
-    const auto fox = site.fox();
-    return fox && fox->localized && site.links->navigates("fox");
-  }));
-  SetGoal set;
-  set.goal.id = "g";
-  set.goal.robot = "fox";
-  set.goal.place = {PlaceFrame::kMap, Point2(2.5, 1), 0};
-  ASSERT_THAT(site.engine.apply(set), test::IsOk());
+  site.send_to(Point2(2.5, 1));
   std::size_t answered = 0;
   ASSERT_TRUE(eventually([&] {
     site.measure();

@@ -3,8 +3,8 @@
  * A pure function of where the gesture began and where the fingers are now, so nothing drifts.
  */
 import { snapAngle, wrapAngle } from './angle';
-import { distance, headingFrom, midpoint, screenPoint, type ScreenPoint, viewPoint } from './points';
-import { type Size, toView, type ViewState } from './similarity';
+import { distance, headingFrom, midpoint, screenPoint, type ScreenPoint, type ViewPoint, viewPoint } from './points';
+import { type Size, toScreen, toView, type ViewState } from './similarity';
 
 export interface Limits {
   readonly minResolution: number;
@@ -49,6 +49,23 @@ export function moveView(grip: Grip, fingers: readonly ScreenPoint[], size: Size
 export function zoomAbout(view: ViewState, at: ScreenPoint, factor: number, size: Size, limits: Limits): ViewState {
   const resolution = clamp(view.resolution / factor, limits.minResolution, limits.maxResolution);
   return withAnchor(view, at, at, resolution, view.rotation, size);
+}
+
+/** Part of the screen, CSS pixels. */
+export interface Box {
+  readonly left: number;
+  readonly top: number;
+  readonly right: number;
+  readonly bottom: number;
+}
+
+/** The view moved up just so far that `p` is `margin` above a card that covers it; the same view where none does, or no room is left above. */
+export function uncovered(view: ViewState, size: Size, p: ViewPoint, card: Box, margin: number): ViewState {
+  const at = toScreen(view, size, p);
+  const isCovered = at[0] > card.left - margin && at[0] < card.right + margin && at[1] > card.top - margin && at[1] < card.bottom;
+  const free = card.top - margin;
+  if (!isCovered || free < margin) return view;
+  return withAnchor(view, at, screenPoint(at[0], free), view.resolution, view.rotation, size);
 }
 
 export const middle = (size: Size): ScreenPoint => screenPoint(size.width / 2, size.height / 2);

@@ -7,7 +7,7 @@ import OlMap from 'ol/Map.js';
 import Projection from 'ol/proj/Projection.js';
 import View from 'ol/View.js';
 import { type Bounds, isEmpty } from '../geometry/bounds';
-import { type Limits, middle, zoomAbout } from '../geometry/gesture';
+import { type Box, type Limits, middle, uncovered, zoomAbout } from '../geometry/gesture';
 import { type ScreenPoint, type ViewPoint, viewPoint } from '../geometry/points';
 import { type Size, toScreen, toView, type ViewState } from '../geometry/similarity';
 import { CanvasLayer } from './canvas_layer';
@@ -27,6 +27,8 @@ export interface Insets {
   readonly bottom: number;
   readonly left: number;
 }
+
+const kFingerPx = 56;
 
 export const kInsets: Insets = { top: 32, right: 32, bottom: 32, left: 32 };
 
@@ -103,6 +105,13 @@ export class Stage {
 
   centerOn(p: ViewPoint): void {
     this.#view.setCenter([p[0], p[1]]);
+  }
+
+  /** Moves so that a card over the page leaves `p` free. @param card in pixels of the page */
+  uncover(p: ViewPoint, card: Box): void {
+    const { x = 0, y = 0 } = this.#map.getTargetElement()?.getBoundingClientRect() ?? {};
+    const here = { left: card.left - x, right: card.right - x, top: card.top - y, bottom: card.bottom - y };
+    this.setView(uncovered(this.view, this.size, p, here, kFingerPx));
   }
 
   /** Shows all of `bounds` beside what covers the canvas. Without bounds nothing moves. */
