@@ -191,6 +191,7 @@ export const de: Readonly<Record<Key, string>> = {
   'sketch.roomsAppear': 'Räume erscheinen hier, sobald Linien sich schließen.',
   'sketch.gaps': '{count} offen: den Ring auf dem Blatt antippen, um eine Lücke zu schließen.',
   'sketch.closeGap': 'Lücke schließen',
+  'sketch.matched': 'Raum {room} des Plans: {level}',
   'sketch.unmatched': 'noch ohne Partner',
   'sketch.marks': 'Marken auf dieser Skizze',
   'sketch.sheet': 'Blatt',

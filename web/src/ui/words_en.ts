@@ -189,6 +189,7 @@ export const en = {
   'sketch.roomsAppear': 'Rooms appear here as soon as lines close.',
   'sketch.gaps': '{count} open: tap the ring on the sheet to close a gap.',
   'sketch.closeGap': 'Close gap',
+  'sketch.matched': 'room {room} of the plan: {level}',
   'sketch.unmatched': 'no match yet',
   'sketch.marks': 'Marks on this sketch',
   'sketch.sheet': 'Sheet',
