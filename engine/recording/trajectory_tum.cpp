@@ -62,7 +62,7 @@ Stamp exact_stamp(std::string_view text, double seconds) {
 std::string to_tum(const Trajectory& trajectory) {
   std::string text;
   text.reserve(trajectory.size() * 80);
-  std::array<char, 160> line;
+  std::array<char, 768> line;  // the largest double has 309 digits before its point
   for (const StampedPose& pose : trajectory) {
     const Pose2& T = pose.T_map_robot;
     const int length = std::snprintf(line.data(), line.size(), " %.6f %.6f 0 0 0 %.9f %.9f\n", T.x(), T.y(),

@@ -34,6 +34,14 @@ TEST(TrajectoryTum, IsTheLineOtherToolsExpect) {
             "1.500000000 1.000000 -2.000000 0 0 0 0.000000000 1.000000000\n");
 }
 
+TEST(TrajectoryTum, APlaceFarOutsideOfThisWorldDoesNotWriteBeyondTheLine) {
+  const std::string text = to_tum({{0, Pose2(1e308, -1e308, 1), Eigen::Matrix3d::Zero()}});
+  EXPECT_THAT(text, testing::EndsWith("0 0 0 0.479425539 0.877582562\n"));
+  const auto read = from_tum(text);
+  ASSERT_THAT(read, test::IsOk());
+  EXPECT_EQ((*read)[0].T_map_robot.x(), 1e308);
+}
+
 TEST(TrajectoryTum, SkipsCommentsAndNamesTheFirstBadLine) {
   const auto good = from_tum("# t x y z qx qy qz qw\n\n1e3 1 2 0 0 0 0 1\r\n");
   ASSERT_THAT(good, test::IsOk());
