@@ -70,6 +70,9 @@ cv::Mat draw_sketch(const SketchMap& sketch, const CleanSketch& clean) {
     for (std::size_t i = 0; i + 1 < s.points_px.size(); ++i)
       cv::line(picture, pixel(s.points_px[i]), pixel(s.points_px[i + 1]), colour, pen, cv::LINE_AA);
   }
+  for (const auto& s : clean.marks)
+    for (std::size_t i = 0; i + 1 < s.points_px.size(); ++i)
+      cv::line(picture, pixel(s.points_px[i]), pixel(s.points_px[i + 1]), cv::Scalar(200, 120, 0), pen, cv::LINE_AA);
   for (const auto& g : clean.gaps)
     cv::line(picture, pixel(g.gap_px.a), pixel(g.gap_px.b),
              g.closed_by_us ? cv::Scalar(255, 60, 0) : cv::Scalar(0, 140, 255), 2 * pen, cv::LINE_AA);

@@ -5,8 +5,14 @@
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 
+#include "core/expect.hpp"
+
 namespace smokemap {
 namespace {
+
+constexpr double kPrintedShare = 0.8;  ///< printed lines are at most so strong beside the pen
+constexpr int kRulingBand_px = 9;
+constexpr double kWallPen = 1.35;  ///< a line so much wider than the hatching beside it is none
 
 /// Share of the line through the picture that is ink, and how strong the ink on it is.
 struct Ruling {
@@ -49,6 +55,23 @@ Ruling look_along(const cv::Mat& mask, const cv::Mat& strength, const Point2& p,
   return r;
 }
 
+/// How strong the ink beside the rulings is: its upper quartile. 0 if there is hardly any.
+double pen_strength(const cv::Mat& mask, const cv::Mat& strength, const std::vector<Ruling>& rulings) {
+  cv::Mat beside = mask.clone();
+  const double reach = mask.rows + mask.cols;
+  const auto pixel = [](const Point2& p) { return cv::Point(static_cast<int>(p.x()), static_cast<int>(p.y())); };
+  for (const auto& r : rulings)
+    cv::line(beside, pixel(r.p - reach * r.u), pixel(r.p + reach * r.u), cv::Scalar(0), kRulingBand_px);
+  std::vector<uchar> values;
+  for (int y = 0; y < beside.rows; ++y)
+    for (int x = 0; x < beside.cols; ++x)
+      if (beside.at<uchar>(y, x)) values.push_back(strength.at<uchar>(y, x));
+  if (values.size() < 100) return 0;
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 3 / 4);
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
 }  // namespace
 
 double polyline_length(const Polyline& line) {
@@ -88,7 +111,9 @@ int erase_ruled_lines(cv::Mat& mask, const cv::Mat& strength, double turn_deg) {
   std::vector<double> strengths;
   for (const auto& r : best) strengths.push_back(r.strength);
   std::sort(strengths.begin(), strengths.end());
-  const double pen = 1.35 * strengths[strengths.size() / 2];  // stronger ink on a ruling was drawn over it
+  const double printed = strengths[strengths.size() / 2];
+  if (printed > kPrintedShare * pen_strength(mask, strength, best)) return 0;  // long walls of one pen
+  const double pen = 1.35 * printed;  // stronger ink on a ruling was drawn over it
   const double reach = mask.rows + mask.cols;
   for (const auto& r : best) {
     const Point2 n(-r.u.y(), r.u.x());
@@ -110,12 +135,14 @@ std::vector<Polyline> straightened(const std::vector<SkeletonBranch>& branches, 
     cv::approxPolyDP(b.points, simple, tolerance_px, false);
     Polyline line;
     for (const auto& p : simple) line.emplace_back(p.x, p.y);
-    if (line.size() >= 2) lines.push_back(std::move(line));
+    lines.push_back(std::move(line));
   }
   return lines;
 }
 
-std::vector<Polyline> without_hatching(std::vector<Polyline> lines, double spacing_px) {
+std::vector<Polyline> without_hatching(std::vector<Polyline> lines, const std::vector<double>& widths,
+                                       double spacing_px) {
+  ENGINE_EXPECT(widths.size() == lines.size());
   std::vector<std::size_t> family(lines.size());
   std::iota(family.begin(), family.end(), std::size_t{0});
   const auto root = [&](std::size_t i) {
@@ -140,11 +167,16 @@ std::vector<Polyline> without_hatching(std::vector<Polyline> lines, double spaci
       const std::size_t low = std::min(root(i), root(j)), high = std::max(root(i), root(j));
       family[high] = low;
     }
-  std::vector<int> size(lines.size(), 0);
-  for (std::size_t i = 0; i < lines.size(); ++i) size[root(i)] += 1;
+  std::vector<std::vector<double>> widths_of(lines.size());  // by family
+  for (std::size_t i = 0; i < lines.size(); ++i) widths_of[root(i)].push_back(widths[i]);
+  for (auto& family_widths : widths_of) std::sort(family_widths.begin(), family_widths.end());
   std::vector<Polyline> kept;
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    if (size[root(i)] < 4) kept.push_back(std::move(lines[i]));
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::vector<double>& others = widths_of[root(i)];
+    // A wall beside steps runs like them, but people draw it stronger.
+    const bool is_wall = widths[i] > kWallPen * others[others.size() / 2];
+    if (others.size() < 4 || is_wall) kept.push_back(std::move(lines[i]));
+  }
   return kept;
 }
 

@@ -22,7 +22,9 @@ int erase_ruled_lines(cv::Mat& mask, const cv::Mat& strength, double turn_deg);
 std::vector<Polyline> straightened(const std::vector<SkeletonBranch>& branches, double tolerance_px);
 
 /// Drops families of four or more straight, parallel lines with at most `spacing_px` between neighbours: hatching,
-/// steps.
-std::vector<Polyline> without_hatching(std::vector<Polyline> lines, double spacing_px);
+/// steps. A line much wider than the others of its family stays.
+/// @param widths  of the pen, one a line
+std::vector<Polyline> without_hatching(std::vector<Polyline> lines, const std::vector<double>& widths,
+                                       double spacing_px);
 
 }  // namespace smokemap

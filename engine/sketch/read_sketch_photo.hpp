@@ -14,6 +14,7 @@ struct SketchPhotoParams {
   double work_long_side_px = 1600;  ///< larger photographs are read at this size
   double background_share = 0.03;   ///< radius of what counts as paper around a pixel
   double min_stroke_share = 0.02;   ///< shorter figures are dots, letters or noise
+  double hair_share = 0.015;        ///< lines with a loose end shorter than this are slips of the pen
   double text_share = 0.04;         ///< compact figures smaller than this are taken for text
   double ruled_turn_deg = 3.0;      ///< ruled lines run parallel within this
   double simplify_pens = 0.6;       ///< how far a polyline may leave the drawn line
