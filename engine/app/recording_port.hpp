@@ -22,6 +22,7 @@ class RecordingPort final : public server::EnginePort {
   Result<Ok> apply(const Command& command, Origin origin) override;
   std::shared_ptr<const Snapshot> snapshot() const override { return scribe_->with_trouble(engine_.snapshot()); }
   void on_snapshot(Listener listener) override;
+  Result<Path> way(const std::string& robot, const Point2& p_map) const override { return engine_.way(robot, p_map); }
   std::optional<Point2> place_on_plan(const Point2& p_map) const override { return engine_.place_on_plan(p_map); }
 
  private:

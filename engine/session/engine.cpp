@@ -62,6 +62,15 @@ class Engine::Impl {
     return core_.place_on_plan(p_map);
   }
 
+  Result<Path> way(const std::string& robot, const Point2& p_map) const {
+    const auto question = [&] {
+      const std::lock_guard lock(core_mutex_);
+      return core_.way_question(robot, p_map);
+    }();
+    if (!question) return question.error();
+    return plan_path(*question->map, question->from_map, question->to_map, question->planner);
+  }
+
   std::shared_ptr<const Snapshot> snapshot() const {
     const std::lock_guard lock(snapshot_mutex_);
     return snapshot_;
@@ -220,6 +229,7 @@ Result<Ok> Engine::apply(const Command& command, Origin origin) { return impl_->
 void Engine::add_scan(const LaserScan& scan) { impl_->push(scan); }
 void Engine::add_sweep(const RadarSweep& sweep) { impl_->push(sweep); }
 void Engine::add_odometry(const Odometry& odometry) { impl_->push(odometry); }
+Result<Path> Engine::way(const std::string& robot, const Point2& p_map) const { return impl_->way(robot, p_map); }
 std::optional<Point2> Engine::place_on_plan(const Point2& p_map) const { return impl_->place_on_plan(p_map); }
 std::shared_ptr<const Snapshot> Engine::snapshot() const { return impl_->snapshot(); }
 void Engine::on_snapshot(SnapshotListener listener) { impl_->on_snapshot(std::move(listener)); }

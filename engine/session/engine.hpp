@@ -48,6 +48,11 @@ class Engine {
   /// fit.
   std::optional<Point2> place_on_plan(const Point2& p_map) const;
 
+  /// The way that a robot would take to a place now, so that people see it before they send it. kNotFound for a robot
+  /// unknown or never localised, kDegenerate with a reason for people where no way is known.
+  /// Cost: O(cells of the map log cells), on the caller's thread.
+  Result<Path> way(const std::string& robot, const Point2& p_map) const;
+
   /// The latest; never null.
   std::shared_ptr<const Snapshot> snapshot() const;
   /// Called from the steering thread for every new snapshot; must be quick. One listener; set before data comes in.

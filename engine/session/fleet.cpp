@@ -257,6 +257,14 @@ GoalView Fleet::view(const Goal& goal, const Carrier& carrier) const {
   return view;
 }
 
+Result<WayQuestion> Fleet::way_question(const std::string& id, const Point2& p_map) const {
+  const auto robot = robots_.find(id);
+  if (robot == robots_.end()) return fail(Errc::kNotFound, "there is no robot " + id);
+  if (!robot->second.ever_localized) return fail(Errc::kNotFound, id + " does not know where it is yet");
+  if (!map_) return fail(Errc::kDegenerate, "there is no map yet");
+  return WayQuestion{map_, robot->second.status.T_map_robot.translation(), p_map, params_.pilot.planner};
+}
+
 std::optional<Pose2> Fleet::T_graph_robot(const std::string& id) const {
   const auto it = robots_.find(id);
   if (it == robots_.end() || !it->second.ever_localized) return std::nullopt;

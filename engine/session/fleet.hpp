@@ -55,6 +55,13 @@ struct PoseReport {
   std::vector<Point2> obstacles_robot;  ///< what stands near, smoke left out (ObstacleWatch)
 };
 
+/// Values only: planning takes a while, and happens without any lock.
+struct WayQuestion {
+  std::shared_ptr<const CostMap> map;
+  Point2 from_map, to_map;
+  PlannerParams planner;
+};
+
 /// Robots, their goals and their exploring. No threads, no clock of its own.
 class Fleet {
  public:
@@ -75,6 +82,9 @@ class Fleet {
   std::vector<RobotStatus> status() const;
   /// Distance and time to go of the goal that a robot drives to; zeros for others.
   GoalView view(const Goal& goal, const Carrier& carrier) const;
+  /// What is asked of the planner for a way from where a robot is now. kNotFound for one never localised, kDegenerate
+  /// before there is a map.
+  Result<WayQuestion> way_question(const std::string& id, const Point2& p_map) const;
   /// Where SLAM has the robot now; nothing for a robot never localised.
   std::optional<Pose2> T_graph_robot(const std::string& id) const;
 

@@ -96,6 +96,10 @@ std::optional<Point2> SessionCore::place_on_plan(const Point2& p_map) const {
   return board_.layout->layout.frame().to_pixels(merged_->layout_to_map.inverse(p_map));
 }
 
+Result<WayQuestion> SessionCore::way_question(const std::string& robot, const Point2& p_map) const {
+  return fleet_.way_question(robot, p_map);
+}
+
 std::vector<Alert> SessionCore::alerts() const {
   std::vector<Alert> alerts;
   if (start_is_old_ && starts_.empty())

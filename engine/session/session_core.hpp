@@ -49,6 +49,7 @@ class SessionCore {
 
   Snapshot snapshot(Stamp now) const;
   std::optional<Point2> place_on_plan(const Point2& p_map) const;
+  Result<WayQuestion> way_question(const std::string& robot, const Point2& p_map) const;
 
  private:
   void forget_starts();

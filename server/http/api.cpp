@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "server/http/api_pictures.hpp"
 #include "server/http/exports.hpp"
@@ -95,6 +96,31 @@ Response snapshot_at(const ApiParts& parts, const Request& request) {
   return json_response({{"at", at}, {"parts", std::move(tables)}});
 }
 
+std::optional<double> query_metres(const Request& request, std::string_view key) {
+  const auto it = request.query.find(key);
+  if (it == request.query.end()) return std::nullopt;
+  double value = 0;
+  const char* end = it->second.data() + it->second.size();
+  const auto [read_to, failed] = std::from_chars(it->second.data(), end, value);
+  const bool is_place = failed == std::errc() && read_to == end && std::abs(value) <= 1e5;
+  return is_place ? std::optional(value) : std::nullopt;
+}
+
+/// A way that is not there is an answer too: `reason` says why.
+Response way(const EnginePort& engine, const Request& request) {
+  const auto robot = request.query.find("robot");
+  const auto x = query_metres(request, "x"), y = query_metres(request, "y");
+  if (robot == request.query.end() || !x || !y)
+    return error_response(400, "invalid_argument", "robot, x and y (metres of the map) are needed");
+  const auto path = engine.way(robot->second, Point2(*x, *y));
+  if (!path && path.error().code == Errc::kNotFound) return error_response(path.error());
+  if (!path) return json_response({{"path", Json::array()}, {"reason", path.error().message}});
+  Json points = Json::array();
+  for (const Point2& p : path->points) points.push_back({p.x(), p.y()});
+  return json_response(
+      {{"path", std::move(points)}, {"length_m", path->length_m}, {"unseen_m", path->planned_m}, {"reason", ""}});
+}
+
 void submit_command(CommandSink& sink, const Request& request, const Respond& respond) {
   auto message = parse_command_message(request.body, {kCommandBody, 16});
   if (!message) return respond(error_response(message.error()));
@@ -137,6 +163,8 @@ void add_api(HttpService& service, const ApiParts& p) {
                at_once([p](const Request& r) { return events(p.store, r); })});
   service.add({Method::kGet, "/api/snapshot", Role::kObserver, 0, true,
                at_once([p](const Request& r) { return snapshot_at(p, r); })});
+  service.add({Method::kGet, "/api/way", Role::kObserver, 0, true,
+               at_once([p](const Request& r) { return way(p.engine, r); })});
   service.add({Method::kGet, "/api/export/{file}", Role::kObserver, 0, true,
                at_once([p](const Request& r) { return exported(p, r); })});
   add_picture_api(service, p);

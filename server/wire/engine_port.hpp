@@ -22,6 +22,10 @@ class EnginePort {
   virtual void on_snapshot(Listener listener) = 0;
   /// The pixel of the plan under a place on the merged map; nothing while no plan is aligned there.
   virtual std::optional<Point2> place_on_plan(const Point2& /*p_map*/) const { return std::nullopt; }
+  /// See Engine::way.
+  virtual Result<Path> way(const std::string& /*robot*/, const Point2& /*p_map*/) const {
+    return fail(Errc::kNotFound, "nobody plans ways here");
+  }
 };
 
 /// The real one.
@@ -32,6 +36,7 @@ class EngineAdapter final : public EnginePort {
   std::shared_ptr<const Snapshot> snapshot() const override { return engine_.snapshot(); }
   void on_snapshot(Listener listener) override { engine_.on_snapshot(std::move(listener)); }
   std::optional<Point2> place_on_plan(const Point2& p_map) const override { return engine_.place_on_plan(p_map); }
+  Result<Path> way(const std::string& robot, const Point2& p_map) const override { return engine_.way(robot, p_map); }
 
  private:
   Engine& engine_;

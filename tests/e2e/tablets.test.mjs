@@ -123,6 +123,7 @@ describe('tablets and the demo', { timeout: 900_000 }, () => {
     await anna.showEverything();
     await anna.tap(room);
     await anna.page.click('[role=dialog] >> text=Send robot');
+    await anna.page.waitForSelector('[role=dialog] >> text=/\\d m to drive/'); // the way is shown before anybody is sent
     await anna.hold('[role=dialog] .hold');
     await anna.see('On its way');
     await anna.see('Arrived', kDrive);

@@ -54,6 +54,13 @@ class FakeEngine final : public server::EnginePort {
     listener_ = std::move(listener);
   }
 
+  /// Straight ways, half of them unseen; none beyond 100 m, none for robots called "nobody".
+  Result<Path> way(const std::string& robot, const Point2& p_map) const override {
+    if (robot == "nobody") return fail(Errc::kNotFound, "there is no robot nobody");
+    if (p_map.norm() > 100) return fail(Errc::kDegenerate, "no way there is known");
+    return Path{{Point2::Zero(), p_map}, p_map.norm(), p_map.norm() / 2};
+  }
+
   /// Every look is a newer snapshot, for those who wait for one.
   void tick_on_look() { counting_ = true; }
   void show(const std::shared_ptr<const OccupancyGrid>& sensed) {

@@ -80,6 +80,7 @@ const routes = {
   'POST /api/plans': () => ({ plan_id: planId, width: planSize[0], height: planSize[1], warnings: [] }),
   [`POST /api/plans/${planId}/read`]: () => layoutDocument(planId),
   'POST /api/commands': (body) => command(body, me),
+  'GET /api/way': () => ({ path: [[robot.x, robot.y], [35, 10], [35, 4]], length_m: 21.5, unseen_m: 12, reason: '' }),
   'GET /api/events': () => ({ events: log, next: log.length + 1 }),
   'GET /api/snapshot': () => ({ at: log.length, parts }),
 };

@@ -223,6 +223,23 @@ TEST(Fleet, AGoalThatTheNavigatorDoesNotReachFailsWithTheReason) {
   EXPECT_EQ(robot.recorder->places["robot1"].size(), 4U);
 }
 
+TEST(Fleet, AWayIsAskedFromWhereTheRobotIsNow) {
+  Pair pair({{"robot1", Pose2(-1, 2, 0)}});
+  EXPECT_THAT(pair.fleet.way_question("robot1", {3, 0}), test::Fails(Errc::kNotFound)) << "never heard";
+  pair.fleet.heard("robot1", 0);
+  EXPECT_THAT(pair.fleet.way_question("robot1", {3, 0}), test::Fails(Errc::kNotFound)) << "never localised";
+  pair.step();
+  const auto question = pair.fleet.way_question("robot1", {3, 0});
+  ASSERT_THAT(question, test::IsOk());
+  const auto way = plan_path(*question->map, question->from_map, question->to_map, question->planner);
+  ASSERT_THAT(way, test::IsOk());
+  EXPECT_THAT(way->points.front(), test::IsNearPoint(Point2(-1, 2), 1e-9));
+  EXPECT_THAT(way->points.back(), test::IsNearPoint(Point2(3, 0), 0.1));
+  EXPECT_GT(way->planned_m, 0.5) << "nobody has seen the right third";
+  pair.fleet.set_map(nullptr);
+  EXPECT_THAT(pair.fleet.way_question("robot1", {3, 0}), test::Fails(Errc::kDegenerate));
+}
+
 TEST(FleetParams, NameTheirFirstFieldOutOfRange) {
   FleetParams params;
   params.lost_after_s = 0.5 * params.stale_after_s;

@@ -182,6 +182,24 @@ TEST(Commands, AreTakenOverHttpToo) {
   EXPECT_EQ(error_code_of(unknown), "not_found");
 }
 
+TEST(Ways, AreShownBeforeAnybodyIsSent) {
+  RunningServer running;
+  const std::string token = RunningServer::bearer(running.pair("observer"));
+  RawClient client(running.port());
+  const Json there = Json::parse(client.ask("GET", "/api/way?robot=fox&x=3&y=-4e0", "", token).body);
+  EXPECT_EQ(there["path"], Json::parse("[[0.0,0.0],[3.0,-4.0]]"));
+  EXPECT_EQ(there["length_m"], 5);
+  EXPECT_EQ(there["unseen_m"], 2.5);
+  const Json nowhere = Json::parse(client.ask("GET", "/api/way?robot=fox&x=101&y=0", "", token).body);
+  EXPECT_EQ(nowhere["path"], Json::array());
+  EXPECT_EQ(nowhere["reason"], "no way there is known");
+  EXPECT_EQ(client.ask("GET", "/api/way?robot=nobody&x=1&y=1", "", token).status, 404);
+  for (const char* query : {"", "?robot=fox", "?robot=fox&x=1", "?x=1&y=1", "?robot=fox&x=1&y=", "?robot=fox&x=1&y=2m",
+                            "?robot=fox&x=inf&y=1", "?robot=fox&x=nan&y=1", "?robot=fox&x=1e6&y=1"})
+    EXPECT_EQ(client.ask("GET", std::string("/api/way") + query, "", token).status, 400) << query;
+  EXPECT_EQ(client.ask("GET", "/api/way?robot=fox&x=1&y=1").status, 401);
+}
+
 TEST(Events, AreListedAndExportedAndLookedBackTo) {
   RunningServer running;
   const std::string token = RunningServer::bearer(running.pair("commander"));

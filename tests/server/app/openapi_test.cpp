@@ -127,6 +127,10 @@ TEST(OpenApiDocument, IsKeptByEveryAnswer) {
   ask("GET", "/api/events", "/api/events?from=1&limit=10", "", token);
   ask("GET", "/api/snapshot", "/api/snapshot?at=1", "", token);
   ask("GET", "/api/snapshot", "/api/snapshot?at=x", "", token);
+  ask("GET", "/api/way", "/api/way?robot=fox&x=1.5&y=-2", "", token);
+  ask("GET", "/api/way", "/api/way?robot=fox&x=900&y=0", "", token);
+  ask("GET", "/api/way", "/api/way?robot=nobody&x=1&y=2", "", token);
+  ask("GET", "/api/way", "/api/way?robot=fox&x=nan&y=2", "", token);
   for (const char* file : {"merged.json", "walls.geojson", "events.jsonl", "map.pgm", "map.yaml", "nothing"})
     ask("GET", "/api/export/{file}", "/api/export/" + std::string(file), "", token);
   EXPECT_TRUE(api.unseen().empty()) << *api.unseen().begin() << " was never asked";

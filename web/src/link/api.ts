@@ -44,6 +44,10 @@ export class Api {
     return this.#json('POST', '/api/commands', http.parseDone, body, 'application/json');
   }
 
+  way(robot: string, [x, y]: readonly [number, number]): Promise<Answer<http.Way>> {
+    return this.#json('GET', `/api/way?${new URLSearchParams({ robot, x: x.toFixed(2), y: y.toFixed(2) })}`, http.parseWay);
+  }
+
   events(from: number, limit: number): Promise<Answer<{ events: http.LogEvent[]; next: number | null }>> {
     return this.#json('GET', `/api/events?from=${from}&limit=${limit}`, http.parseEventPage);
   }

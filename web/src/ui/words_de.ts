@@ -249,6 +249,8 @@ export const de: Readonly<Record<Key, string>> = {
   'operate.measureAgain': 'Tippen, um neu zu messen.',
   'operate.which': 'Welche?',
   'operate.goalTitle': 'Roboter hierher schicken',
+  'operate.way': '{metres} Fahrt',
+  'operate.wayUnseen': '{metres} Fahrt, davon {unseen} durch noch Ungesehenes',
   'operate.goalTurn': 'Am Griff ziehen, um die Blickrichtung am Ziel zu wählen. Auf die Karte tippen verschiebt das Ziel.',
   'operate.goalTurned': 'Am Ziel blickt er in Richtung des Pfeils.',
   'operate.start': '{robot} schicken',

@@ -247,6 +247,8 @@ export const en = {
   'operate.measureAgain': 'Tap to measure again.',
   'operate.which': 'Which one?',
   'operate.goalTitle': 'Send a robot here',
+  'operate.way': '{metres} to drive',
+  'operate.wayUnseen': '{metres} to drive, {unseen} of it where nothing has been seen yet',
   'operate.goalTurn': 'Drag the handle to choose where it looks on arrival. Tap the map to move the goal.',
   'operate.goalTurned': 'It will look along the arrow on arrival.',
   'operate.start': 'Send {robot}',

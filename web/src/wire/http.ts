@@ -23,11 +23,14 @@ const logEvent = v.object({
   data: v.optional(v.unknown(), {}),
   outcome: v.optional(v.string(), ''),
 });
+const way = v.object({ path: v.array(pair), length_m: v.optional(number, 0), unseen_m: v.optional(number, 0), reason: v.string() });
 const eventPage = v.object({ events: v.array(v.unknown()), next: v.nullish(number, null) });
 
 export type Pairing = v.InferOutput<typeof pairing>;
 export type Upload = v.InferOutput<typeof upload>;
 export type SketchPhoto = v.InferOutput<typeof photo>;
+/** Without points there is none, and `reason` says why. */
+export type Way = v.InferOutput<typeof way>;
 export type LogEvent = v.InferOutput<typeof logEvent>;
 
 const parser =
@@ -41,6 +44,7 @@ export const parseFailure = parser(failure);
 export const parsePairing = parser(pairing);
 export const parseDone = parser(v.object({ type: v.literal('done'), seq: number }));
 export const parseUpload = parser(upload);
+export const parseWay = parser(way);
 export const parseSketchPhoto = parser(photo);
 
 export function parseEventPage(value: unknown): { events: LogEvent[]; next: number | null } | undefined {
