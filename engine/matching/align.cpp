@@ -33,9 +33,9 @@ double pin_cost(const std::vector<Point2>& shifts, const Point2& shift) {
 }
 
 /// Compares one turned and scaled a with all shifts over b at once.
-class ShiftSearch {
+class ShiftCorrelation {
  public:
-  explicit ShiftSearch(const MapRaster& b) : b_(b) {
+  explicit ShiftCorrelation(const MapRaster& b) {
     const int side = 2 * std::max(b.depth.cols, b.depth.rows);
     size_ = cv::getOptimalDFTSize(side);
     cv::Mat padded(size_, size_, CV_32FC1, cv::Scalar(0));
@@ -44,43 +44,28 @@ class ShiftSearch {
     cv::dft(padded, spectrum_b_);
   }
 
-  /// @param linear  turn and scale of a in cells of b, about a's middle, which it lays on the middle of the window
-  MapAlignment best_shift(const MapRaster& a, const Eigen::Matrix2d& linear, const std::vector<Pin>& pins) const {
+  /// Turn and scale of a about its middle, which is laid on the middle of the window.
+  Eigen::Affine2d window(const MapRaster& a, const Eigen::Matrix2d& linear) const {
     Eigen::Affine2d window_a = Eigen::Affine2d::Identity();
-    const Point2 middle_a(0.5 * (a.depth.cols - 1), 0.5 * (a.depth.rows - 1));
     window_a.linear() = linear;
-    window_a.translation() = Point2::Constant(0.5 * size_) - linear * middle_a;
-    const cv::Mat warped = warp(a.depth, window_a);
-    const double energy_a = warped.dot(warped);
-    cv::Mat spectrum_a, correlation;
+    window_a.translation() =
+        Point2::Constant(0.5 * size_) - linear * Point2(0.5 * (a.depth.cols - 1), 0.5 * (a.depth.rows - 1));
+    return window_a;
+  }
+
+  cv::Mat likeness(const MapRaster& a, const Eigen::Affine2d& window_a) const {
+    const cv::Matx23d matrix(window_a(0, 0), window_a(0, 1), window_a(0, 2), window_a(1, 0), window_a(1, 1),
+                             window_a(1, 2));
+    cv::Mat warped, spectrum_a, correlation;
+    cv::warpAffine(a.depth, warped, matrix, cv::Size(size_, size_), cv::INTER_LINEAR, cv::BORDER_CONSTANT, 0);
+    const double norm = std::sqrt(std::max(1e-9, warped.dot(warped) * energy_b_));
     cv::dft(warped, spectrum_a);
     cv::mulSpectrums(spectrum_b_, spectrum_a, spectrum_a, 0, true);
     cv::dft(spectrum_a, correlation, cv::DFT_INVERSE | cv::DFT_SCALE | cv::DFT_REAL_OUTPUT);
-    const std::vector<Point2> shifts = pin_shifts(window_a, a, b_, pins);
-    const double norm = std::sqrt(std::max(1e-9, energy_a * energy_b_));
-    MapAlignment best{window_a, -1e9};
-    Point2 best_shift = Point2::Zero();
-    for (int y = 0; y < size_; ++y)
-      for (int x = 0; x < size_; ++x) {
-        const Point2 shift(x < size_ / 4 ? x : x - size_, y < size_ / 4 ? y : y - size_);
-        const double score = correlation.at<float>(y, x) / norm - pin_cost(shifts, shift);
-        if (score > best.score) best.score = score, best_shift = shift;
-      }
-    best.T_b_a_px.pretranslate(best_shift);  // cells so far
-    best.T_b_a_px = pixels_of_cells(b_) * best.T_b_a_px * pixels_of_cells(a).inverse();
-    return best;
+    return correlation / norm;
   }
 
  private:
-  cv::Mat warp(const cv::Mat& depth, const Eigen::Affine2d& window_a) const {
-    const cv::Matx23d matrix(window_a(0, 0), window_a(0, 1), window_a(0, 2), window_a(1, 0), window_a(1, 1),
-                             window_a(1, 2));
-    cv::Mat warped;
-    cv::warpAffine(depth, warped, matrix, cv::Size(size_, size_), cv::INTER_LINEAR, cv::BORDER_CONSTANT, 0);
-    return warped;
-  }
-
-  const MapRaster& b_;
   int size_ = 0;
   double energy_b_ = 0;
   cv::Mat spectrum_b_;
@@ -123,27 +108,51 @@ std::vector<MapAlignment> choose(std::vector<std::vector<MapAlignment>>& by_turn
 
 }  // namespace
 
-std::vector<MapAlignment> find_alignments(const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins,
-                                          bool allow_mirror, int count) {
-  const ShiftSearch search(b);
+AlignmentSearch::AlignmentSearch(const MapRaster& a, const MapRaster& b, bool allow_mirror) : a_(a), b_(b) {
+  const ShiftCorrelation correlation(b);
   const double scale = std::sqrt(b.free_cells / std::max(1.0, a.free_cells));
-  std::vector<std::vector<MapAlignment>> by_turn;
   for (int mirror = 0; mirror <= (allow_mirror ? 1 : 0); ++mirror)
     for (int quarter = 0; quarter < 4; ++quarter) {
       // Straighten a's walls, mirror, turn by quarters, then into b's wall direction; stretch along b's walls.
       const Eigen::Matrix2d flip = Eigen::Vector2d(mirror ? -1 : 1, 1).asDiagonal();
       const Eigen::Matrix2d straight =
           rotation(quarter * std::numbers::pi / 2) * flip * rotation(-a.wall_direction_rad);
-      std::vector<MapAlignment>& turned = by_turn.emplace_back();
       for (const double size : kScales)
         for (const double stretch : kStretches) {
           const Eigen::Matrix2d scaling =
               (scale * size * Eigen::Vector2d(std::sqrt(stretch), 1 / std::sqrt(stretch))).asDiagonal();
           // Wall directions are modulo 90 degrees: take the smaller of the two equal turns.
-          turned.push_back(search.best_shift(a, rotation(b.wall_direction_rad) * scaling * straight, pins));
+          const Eigen::Affine2d window_a = correlation.window(a, rotation(b.wall_direction_rad) * scaling * straight);
+          candidates_.push_back({4 * mirror + quarter, window_a, correlation.likeness(a, window_a)});
         }
     }
-  return choose(by_turn, a, kApart * b.px_per_cell * std::max(b.depth.cols, b.depth.rows), static_cast<size_t>(count));
+}
+
+MapAlignment AlignmentSearch::best_shift(const Candidate& candidate, const std::vector<Pin>& pins) const {
+  const std::vector<Point2> shifts = pin_shifts(candidate.window_a, a_, b_, pins);
+  const int size = candidate.likeness.cols;
+  MapAlignment best{candidate.window_a, -1e9};
+  Point2 best_shift = Point2::Zero();
+  for (int y = 0; y < size; ++y) {
+    const auto* row = candidate.likeness.ptr<float>(y);
+    for (int x = 0; x < size; ++x) {
+      if (row[x] <= best.score) continue;  // pins only cost
+      const Point2 shift(x < size / 4 ? x : x - size, y < size / 4 ? y : y - size);
+      const double score = row[x] - pin_cost(shifts, shift);
+      if (score > best.score) best.score = score, best_shift = shift;
+    }
+  }
+  best.T_b_a_px.pretranslate(best_shift);  // cells so far
+  best.T_b_a_px = pixels_of_cells(b_) * best.T_b_a_px * pixels_of_cells(a_).inverse();
+  return best;
+}
+
+std::vector<MapAlignment> AlignmentSearch::best(const std::vector<Pin>& pins, int count) const {
+  std::vector<std::vector<MapAlignment>> by_turn(static_cast<size_t>(candidates_.back().turn) + 1);
+  for (const Candidate& candidate : candidates_)
+    by_turn[static_cast<size_t>(candidate.turn)].push_back(best_shift(candidate, pins));
+  return choose(by_turn, a_, kApart * b_.px_per_cell * std::max(b_.depth.cols, b_.depth.rows),
+                static_cast<size_t>(count));
 }
 
 }  // namespace smokemap

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <opencv2/core.hpp>
 #include <vector>
 
 #include "maps/correspondence.hpp"
@@ -14,10 +15,28 @@ struct MapAlignment {
   double score = 0;  ///< likeness of the two depth images under it, 0..1, less what the pins cost
 };
 
-/// Candidate alignments, best first, different from each other: the walls of both maps are made parallel, then the four
-/// quarter turns (eight with mirror images), a range of scales along both wall directions and all shifts are compared.
-/// Cost: one Fourier transform a candidate, 15..30 ms altogether.
-std::vector<MapAlignment> find_alignments(const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins,
-                                          bool allow_mirror, int count);
+/// All ways of laying one map over another, compared once, so that pins can be weighed again at every tap.
+///
+/// The walls of both maps are made parallel, then the four quarter turns (eight with mirror images), a range of scales
+/// along both wall directions and all shifts are compared.
+/// Cost: to construct one Fourier transform a candidate, 15 ms and 3 MB altogether; to ask a few milliseconds.
+class AlignmentSearch {
+ public:
+  AlignmentSearch(const MapRaster& a, const MapRaster& b, bool allow_mirror);
+
+  /// Candidate alignments, best first, different from each other.
+  std::vector<MapAlignment> best(const std::vector<Pin>& pins, int count) const;
+
+ private:
+  struct Candidate {
+    int turn = 0;                                            ///< candidates of one turn or mirrored turn share it
+    Eigen::Affine2d window_a = Eigen::Affine2d::Identity();  ///< cell of a -> cell of b, before shifting
+    cv::Mat likeness;  ///< CV_32FC1: of the depth images, for every shift; shifts wrap round
+  };
+  MapAlignment best_shift(const Candidate& candidate, const std::vector<Pin>& pins) const;
+
+  MapRaster a_, b_;
+  std::vector<Candidate> candidates_;
+};
 
 }  // namespace smokemap

@@ -12,6 +12,10 @@ constexpr double kMostSure = 0.97, kLeastSure = 0.02;
 
 }  // namespace
 
+double weight_beside(const Hypothesis& hypothesis, const Hypothesis& best) {
+  return std::exp((hypothesis.score - best.score) / kScoreSpread);
+}
+
 PairEvidence weigh_pair(const RegionPair& pair, const std::vector<Hypothesis>& all) {
   const int i = pair.label_a - 1, j = pair.label_b - 1;
   const Hypothesis& best = all.front();
@@ -21,7 +25,7 @@ PairEvidence weigh_pair(const RegionPair& pair, const std::vector<Hypothesis>& a
   evidence.is_partner = best.structure.partner[static_cast<size_t>(i)] == j;
   double agreeing = 0, total = 0;
   for (const Hypothesis& hypothesis : all) {
-    const double weight = std::exp((hypothesis.score - best.score) / kScoreSpread);
+    const double weight = weight_beside(hypothesis, best);
     total += weight;
     const bool agrees = hypothesis.structure.partner[static_cast<size_t>(i)] == j ||
                         (evidence.is_partner == 0 && hypothesis.scores.share_of_b(i, j) > 0.5);

@@ -15,6 +15,9 @@ struct PairEvidence {
   double is_partner = 0;  ///< 1 for a partner, 0 for a region joined because it lies under one
 };
 
+/// How likely a hypothesis is for each time that the best one is, 0..1.
+double weight_beside(const Hypothesis& hypothesis, const Hypothesis& best);
+
 PairEvidence weigh_pair(const RegionPair& pair, const std::vector<Hypothesis>& all);
 
 /// How sure a pair is: of those said to be 0.9 sure, nine in ten are right.

@@ -1,7 +1,6 @@
 #include "matching/group_map.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,29 +13,32 @@ constexpr double kPullReach = 0.45;  ///< how far a handle pulls, in roots of th
 
 }  // namespace
 
-GroupSide make_side(const cv::Mat& labels, const std::vector<int>& members, const Eigen::Matrix2d& frame) {
-  GroupSide side;
-  side.frame = frame;
-  side.low = Point2::Constant(std::numeric_limits<double>::infinity());
-  side.high = -side.low;
-  std::array<bool, 65536> is_member{};
-  for (const int label : members) is_member[static_cast<size_t>(label)] = true;
-  const auto belongs = [&](int x, int y) {
-    return x >= 0 && y >= 0 && x < labels.cols && y < labels.rows && is_member[labels.at<unsigned short>(y, x)];
+std::vector<GroupSide> make_sides(const cv::Mat& labels, const std::vector<int>& group_of_label, size_t groups,
+                                  const Eigen::Matrix2d& frame) {
+  GroupSide empty;
+  empty.frame = frame;
+  empty.low = Point2::Constant(std::numeric_limits<double>::infinity());
+  empty.high = -empty.low;
+  std::vector<GroupSide> sides(groups, empty);
+  const auto group_at = [&](int x, int y) {
+    return x >= 0 && y >= 0 && x < labels.cols && y < labels.rows ? group_of_label[labels.at<unsigned short>(y, x)]
+                                                                  : -1;
   };
-  for (int y = 0; y < labels.rows; ++y) {
-    const auto* row = labels.ptr<unsigned short>(y);
+  for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x) {
-      if (!is_member[row[x]]) continue;
+      const int group = group_at(x, y);
+      if (group < 0) continue;
+      GroupSide& side = sides[static_cast<size_t>(group)];
       side.area_px += 1;
-      if (belongs(x - 1, y) && belongs(x + 1, y) && belongs(x, y - 1) && belongs(x, y + 1)) continue;
+      if (group_at(x - 1, y) == group && group_at(x + 1, y) == group && group_at(x, y - 1) == group &&
+          group_at(x, y + 1) == group)
+        continue;
       side.rim.emplace_back(x, y);
       const Point2 p = frame * Point2(x, y);
       side.low = side.low.cwiseMin(p);
       side.high = side.high.cwiseMax(p);
     }
-  }
-  return side;
+  return sides;
 }
 
 GroupMap::GroupMap(const GroupSide& from, const GroupSide& to, std::vector<Handle> handles)

@@ -20,8 +20,11 @@ struct GroupSide {
   double diagonal() const { return (high - low).norm(); }
 };
 
-/// @param labels  CV_16UC1; `members` are the labels of this side
-GroupSide make_side(const cv::Mat& labels, const std::vector<int>& members, const Eigen::Matrix2d& frame);
+/// The sides of all groups of one map.
+/// @param labels          CV_16UC1
+/// @param group_of_label  of each label, or -1; one entry for every label that occurs
+std::vector<GroupSide> make_sides(const cv::Mat& labels, const std::vector<int>& group_of_label, size_t groups,
+                                  const Eigen::Matrix2d& frame);
 
 /// A place known on both maps: a door between two matched places, or a pin.
 struct Handle {

@@ -15,10 +15,10 @@ constexpr int kCoarse_cells = 44;
 constexpr int kFine_cells = 72;
 constexpr double kCoarseSlope_cells = 3;
 constexpr double kFineSlope_cells = 4;
-constexpr int kRefined = 3;           ///< of the best hypotheses, laid again as their pairs ask
-constexpr double kWarpWeight = 0.5;   ///< of the likeness after bending beside the energy of the structure
-constexpr double kCoverWeight = 0.7;  ///< of the share of b that has a partner
-constexpr double kScalePrior = 3;     ///< weight of the former scale against what the pairs say, in their total weight
+constexpr int kRefined = 3;            ///< of the best hypotheses, laid again as their pairs ask
+constexpr double kWarpWeight = 0.5;    ///< of the likeness after bending beside the energy of the structure
+constexpr double kCoverWeight = 0.35;  ///< of the share of b that has a partner
+constexpr double kScalePrior = 3;      ///< weight of the former scale against what the pairs say, in their total weight
 constexpr double kMostRescaling = 1.6;
 
 Eigen::Matrix2d turn_of(const Eigen::Matrix2d& linear) {
@@ -26,122 +26,108 @@ Eigen::Matrix2d turn_of(const Eigen::Matrix2d& linear) {
   return svd.matrixU() * svd.matrixV().transpose();
 }
 
-class HypothesisMaker {
- public:
-  HypothesisMaker(const Segmentation& a, const Segmentation& b, const std::vector<Pin>& pins, const PairRules& rules,
-                  const MatchParams& params)
-      : a_(a), b_(b), pins_(pins), rules_(rules), params_(params) {}
+void sort_best_first(std::vector<Hypothesis>& all) {
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Hypothesis& one, const Hypothesis& two) { return one.score > two.score; });
+}
 
-  std::vector<Hypothesis> make() const {
-    std::vector<Hypothesis> all;
-    const MapRaster coarse_a = make_raster(a_, kCoarse_cells, kCoarseSlope_cells);
-    const MapRaster coarse_b = make_raster(b_, kCoarse_cells, kCoarseSlope_cells);
-    for (const MapAlignment& alignment :
-         find_alignments(coarse_a, coarse_b, pins_, params_.allow_mirror, params_.candidates))
-      add(solve(alignment), all);
-    sort(all);
-    const size_t count = std::min(all.size(), static_cast<size_t>(kRefined));
-    for (size_t i = 0; i < count; ++i) {
-      Hypothesis refined = solve(laid_by_pairs(all[i]));
-      if (refined.score > all[i].score) all[i] = std::move(refined);
+/// Two alignments may lead to the same pairs: the better one stays.
+void add_hypothesis(Hypothesis hypothesis, std::vector<Hypothesis>& all) {
+  for (Hypothesis& other : all)
+    if (other.structure.partner == hypothesis.structure.partner) {
+      if (hypothesis.score > other.score) other = std::move(hypothesis);
+      return;
     }
-    sort(all);
-    return all;
-  }
-
- private:
-  static void sort(std::vector<Hypothesis>& all) {
-    std::stable_sort(all.begin(), all.end(),
-                     [](const Hypothesis& one, const Hypothesis& two) { return one.score > two.score; });
-  }
-
-  /// Two alignments may lead to the same pairs: the better one stays.
-  static void add(Hypothesis hypothesis, std::vector<Hypothesis>& all) {
-    for (Hypothesis& other : all)
-      if (other.structure.partner == hypothesis.structure.partner) {
-        if (hypothesis.score > other.score) other = std::move(hypothesis);
-        return;
-      }
-    all.push_back(std::move(hypothesis));
-  }
-
-  Hypothesis solve(const MapAlignment& alignment) const {
-    Hypothesis result;
-    result.alignment = alignment;
-    result.turn_b_a = turn_of(alignment.T_b_a_px.linear());
-    result.warp = bend(alignment, fine_a_, fine_b_, pins_);
-    result.scores = score_pairs(a_, b_, fine_a_, fine_b_, result.warp);
-    StructureProblem problem;
-    problem.a = &graph_a_, problem.b = &graph_b_, problem.turn_b_a = result.turn_b_a;
-    problem.scale_b_a = std::sqrt(std::abs(alignment.T_b_a_px.linear().determinant()));
-    problem.likeness = result.scores.likeness;
-    problem.forced = rules_.forced, problem.forbidden = rules_.forbidden;
-    problem.many_to_one = params_.allow_many_to_many;
-    result.structure = match_structure(problem);
-    result.score = result.structure.energy + kWarpWeight * result.warp.score + kCoverWeight * covered(result.structure);
-    return result;
-  }
-
-  /// Share of b, by importance, that some region of a goes to.
-  double covered(const StructureMatch& structure) const {
-    double sum = 0;
-    for (int j = 0; j < graph_b_.size(); ++j)
-      if (std::find(structure.partner.begin(), structure.partner.end(), j) != structure.partner.end())
-        sum += graph_b_.importance(j);
-    return sum;
-  }
-
-  /// Turn kept; scale along both wall directions of b and shift such that partners' middles meet, weighted.
-  MapAlignment laid_by_pairs(const Hypothesis& hypothesis) const {
-    const Eigen::Matrix2d axes_b = Eigen::Rotation2Dd(fine_b_.wall_direction_rad).toRotationMatrix();
-    const Eigen::Matrix2d straight = axes_b.transpose() * hypothesis.turn_b_a;
-    std::vector<std::pair<Point2, Point2>> meets;
-    std::vector<double> weights;
-    for (int i = 0; i < graph_a_.size(); ++i) {
-      const int j = hypothesis.structure.partner[static_cast<size_t>(i)];
-      if (j < 0) continue;
-      meets.emplace_back(straight * graph_a_.middles_px[static_cast<size_t>(i)],
-                         axes_b.transpose() * graph_b_.middles_px[static_cast<size_t>(j)]);
-      weights.push_back(graph_a_.importance(i) * (0.05 + hypothesis.structure.certainty(i, j)));
-    }
-    if (meets.size() < 2) return hypothesis.alignment;
-    Point2 mean_a = Point2::Zero(), mean_b = Point2::Zero();
-    double total = 0;
-    for (size_t k = 0; k < meets.size(); ++k) {
-      mean_a += weights[k] * meets[k].first, mean_b += weights[k] * meets[k].second;
-      total += weights[k];
-    }
-    mean_a /= total, mean_b /= total;
-    const double before = std::sqrt(std::abs(hypothesis.alignment.T_b_a_px.linear().determinant()));
-    Eigen::Array2d moment = Eigen::Array2d::Zero(), spread = Eigen::Array2d::Zero();
-    for (size_t k = 0; k < meets.size(); ++k) {
-      const Eigen::Array2d from = meets[k].first - mean_a, to = meets[k].second - mean_b;
-      moment += weights[k] * from * to, spread += weights[k] * from * from;
-    }
-    const double held = kScalePrior * spread.mean();
-    const Eigen::Array2d scale = ((moment + held * before) / (spread + held).max(1e-9))
-                                     .max(before / kMostRescaling)
-                                     .min(before * kMostRescaling);
-    MapAlignment laid = hypothesis.alignment;
-    laid.T_b_a_px.linear() = axes_b * scale.matrix().asDiagonal() * straight;
-    laid.T_b_a_px.translation() = axes_b * (mean_b - (scale * mean_a.array()).matrix());
-    return laid;
-  }
-
-  const Segmentation &a_, &b_;
-  const std::vector<Pin>& pins_;
-  const PairRules& rules_;
-  const MatchParams& params_;
-  const MapRaster fine_a_ = make_raster(a_, kFine_cells, kFineSlope_cells);
-  const MapRaster fine_b_ = make_raster(b_, kFine_cells, kFineSlope_cells);
-  const RegionGraph graph_a_ = make_region_graph(a_), graph_b_ = make_region_graph(b_);
-};
+  all.push_back(std::move(hypothesis));
+}
 
 }  // namespace
 
-std::vector<Hypothesis> find_hypotheses(const Segmentation& a, const Segmentation& b, const std::vector<Pin>& pins,
-                                        const PairRules& rules, const MatchParams& params) {
-  return HypothesisMaker(a, b, pins, rules, params).make();
+HypothesisFinder::HypothesisFinder(const Segmentation& a, const Segmentation& b, const MatchParams& params)
+    : a_(a),
+      b_(b),
+      params_(params),
+      alignments_(make_raster(a, kCoarse_cells, kCoarseSlope_cells), make_raster(b, kCoarse_cells, kCoarseSlope_cells),
+                  params.allow_mirror),
+      bending_(make_raster(a, kFine_cells, kFineSlope_cells), make_raster(b, kFine_cells, kFineSlope_cells)),
+      graph_a_(make_region_graph(a)),
+      graph_b_(make_region_graph(b)) {}
+
+std::vector<Hypothesis> HypothesisFinder::find(const std::vector<Pin>& pins, const PairRules& rules) const {
+  std::vector<Hypothesis> all;
+  for (const MapAlignment& alignment : alignments_.best(pins, params_.candidates))
+    add_hypothesis(solve(alignment, pins, rules), all);
+  sort_best_first(all);
+  const size_t count = std::min(all.size(), static_cast<size_t>(kRefined));
+  for (size_t i = 0; i < count; ++i) {
+    Hypothesis refined = solve(laid_by_pairs(all[i]), pins, rules);
+    if (refined.score > all[i].score) all[i] = std::move(refined);
+  }
+  sort_best_first(all);
+  return all;
+}
+
+Hypothesis HypothesisFinder::solve(const MapAlignment& alignment, const std::vector<Pin>& pins,
+                                   const PairRules& rules) const {
+  Hypothesis result;
+  result.alignment = alignment;
+  result.turn_b_a = turn_of(alignment.T_b_a_px.linear());
+  result.warp = bending_.bend(alignment, pins);
+  result.scores = score_pairs(a_, b_, bending_.a(), bending_.b(), result.warp);
+  StructureProblem problem;
+  problem.a = &graph_a_, problem.b = &graph_b_, problem.turn_b_a = result.turn_b_a;
+  problem.scale_b_a = std::sqrt(std::abs(alignment.T_b_a_px.linear().determinant()));
+  problem.likeness = result.scores.likeness;
+  problem.forced = rules.forced, problem.forbidden = rules.forbidden;
+  problem.many_to_one = params_.allow_many_to_many;
+  result.structure = match_structure(problem);
+  result.score = result.structure.energy + kWarpWeight * result.warp.score + kCoverWeight * covered(result.structure);
+  return result;
+}
+
+/// Share of b, by importance, that some region of a goes to.
+double HypothesisFinder::covered(const StructureMatch& structure) const {
+  double sum = 0;
+  for (int j = 0; j < graph_b_.size(); ++j)
+    if (std::find(structure.partner.begin(), structure.partner.end(), j) != structure.partner.end())
+      sum += graph_b_.importance(j);
+  return sum;
+}
+
+/// Turn kept; scale along both wall directions of b and shift such that partners' middles meet, weighted.
+MapAlignment HypothesisFinder::laid_by_pairs(const Hypothesis& hypothesis) const {
+  const Eigen::Matrix2d axes_b = Eigen::Rotation2Dd(bending_.b().wall_direction_rad).toRotationMatrix();
+  const Eigen::Matrix2d straight = axes_b.transpose() * hypothesis.turn_b_a;
+  std::vector<std::pair<Point2, Point2>> meets;
+  std::vector<double> weights;
+  for (int i = 0; i < graph_a_.size(); ++i) {
+    const int j = hypothesis.structure.partner[static_cast<size_t>(i)];
+    if (j < 0) continue;
+    meets.emplace_back(straight * graph_a_.middles_px[static_cast<size_t>(i)],
+                       axes_b.transpose() * graph_b_.middles_px[static_cast<size_t>(j)]);
+    weights.push_back(graph_a_.importance(i) * (0.05 + hypothesis.structure.certainty(i, j)));
+  }
+  if (meets.size() < 2) return hypothesis.alignment;
+  Point2 mean_a = Point2::Zero(), mean_b = Point2::Zero();
+  double total = 0;
+  for (size_t k = 0; k < meets.size(); ++k) {
+    mean_a += weights[k] * meets[k].first, mean_b += weights[k] * meets[k].second;
+    total += weights[k];
+  }
+  mean_a /= total, mean_b /= total;
+  const double before = std::sqrt(std::abs(hypothesis.alignment.T_b_a_px.linear().determinant()));
+  Eigen::Array2d moment = Eigen::Array2d::Zero(), spread = Eigen::Array2d::Zero();
+  for (size_t k = 0; k < meets.size(); ++k) {
+    const Eigen::Array2d from = meets[k].first - mean_a, to = meets[k].second - mean_b;
+    moment += weights[k] * from * to, spread += weights[k] * from * from;
+  }
+  const double held = kScalePrior * spread.mean();
+  const Eigen::Array2d scale =
+      ((moment + held * before) / (spread + held).max(1e-9)).max(before / kMostRescaling).min(before * kMostRescaling);
+  MapAlignment laid = hypothesis.alignment;
+  laid.T_b_a_px.linear() = axes_b * scale.matrix().asDiagonal() * straight;
+  laid.T_b_a_px.translation() = axes_b * (mean_b - (scale * mean_a.array()).matrix());
+  return laid;
 }
 
 }  // namespace smokemap

@@ -6,7 +6,8 @@
 #include "maps/correspondence.hpp"
 #include "maps/segmentation.hpp"
 #include "matching/align.hpp"
-#include "matching/match.hpp"
+#include "matching/match_params.hpp"
+#include "matching/region_graph.hpp"
 #include "matching/region_pairs.hpp"
 #include "matching/structure_match.hpp"
 #include "matching/warp.hpp"
@@ -29,12 +30,28 @@ struct Hypothesis {
   double score = 0;  ///< hypotheses are compared by it
 };
 
-/// The hypotheses for two maps, best first, no two with the same pairs.
+/// Finds the hypotheses for two maps, again and again as people tap: what does not depend on taps is worked out once.
 ///
-/// Each comes from one candidate alignment: bent until walls meet, regions assigned by place, size and the structure
-/// around them. The best are then laid again as their own pairs ask, which corrects an alignment that was right about
-/// the rooms in the middle and wrong about the outer ones, and solved again.
-std::vector<Hypothesis> find_hypotheses(const Segmentation& a, const Segmentation& b, const std::vector<Pin>& pins,
-                                        const PairRules& rules, const MatchParams& params);
+/// Each hypothesis comes from one candidate alignment: bent until walls meet, regions assigned by place, size and the
+/// structure around them. The best are then laid again as their own pairs ask, which corrects an alignment that was
+/// right about the rooms in the middle and wrong about the outer ones, and solved again.
+class HypothesisFinder {
+ public:
+  HypothesisFinder(const Segmentation& a, const Segmentation& b, const MatchParams& params);
+
+  /// Best first, no two with the same pairs.
+  std::vector<Hypothesis> find(const std::vector<Pin>& pins, const PairRules& rules) const;
+
+ private:
+  Hypothesis solve(const MapAlignment& alignment, const std::vector<Pin>& pins, const PairRules& rules) const;
+  double covered(const StructureMatch& structure) const;
+  MapAlignment laid_by_pairs(const Hypothesis& hypothesis) const;
+
+  Segmentation a_, b_;
+  MatchParams params_;
+  AlignmentSearch alignments_;
+  BendingPair bending_;
+  RegionGraph graph_a_, graph_b_;
+};
 
 }  // namespace smokemap

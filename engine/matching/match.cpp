@@ -16,6 +16,7 @@
 #include "core/check.hpp"
 #include "matching/confidence.hpp"
 #include "matching/hypotheses.hpp"
+#include "matching/next_tap.hpp"
 #include "matching/published.hpp"
 #include "matching/region_pairs.hpp"
 
@@ -87,23 +88,20 @@ double disagreement(const std::vector<RegionPair>& one, const std::vector<Region
   return all == 0 ? 0 : 1 - static_cast<double>(common) / static_cast<double>(all);
 }
 
-/// The largest region on which best and runner-up differ; without a runner-up, the one least sure for its size.
-std::optional<int> most_telling_region(const Segmentation& a, const Matching& matching) {
-  const auto best = keys(matching.pairs), other = keys(matching.runner_up);
-  std::optional<int> found;
-  double most = 0;
-  for (const Region& region : a.regions) {
-    double confidence = 0;
-    bool differs = false;
-    for (const RegionPair& pair : matching.pairs) {
-      if (pair.label_a != region.label) continue;
-      confidence = std::max(confidence, pair.confidence);
-      differs |= !other.contains({pair.label_a, pair.label_b});
-    }
-    const double worth = std::sqrt(region.area_px) * (1 - confidence) * (differs && !other.empty() ? 2 : 1);
-    if (worth > most) most = worth, found = region.label;
+/// The region whose tap is worth most, and none that a person has already bound.
+std::optional<int> most_telling_label(const Segmentation& a, const Matching& matching, const PairRules& rules,
+                                      const std::vector<WeighedAnswer>& answers) {
+  Eigen::VectorXd importance(a.regions.size()), confidence = Eigen::VectorXd::Zero(importance.size());
+  std::vector<bool> bound(a.regions.size());
+  for (Eigen::Index i = 0; i < importance.size(); ++i) {
+    importance(i) = std::sqrt(a.regions[static_cast<size_t>(i)].area_px);
+    bound[static_cast<size_t>(i)] = rules.forced.row(i).any();
   }
-  return most > 0 ? found : std::nullopt;
+  importance /= importance.sum();
+  for (const RegionPair& pair : matching.pairs)
+    confidence(pair.label_a - 1) = std::max(confidence(pair.label_a - 1), pair.confidence);
+  const std::optional<int> region = next_tap(answers, importance, confidence, bound);
+  return region ? std::optional<int>(*region + 1) : std::nullopt;
 }
 
 std::vector<RegionPair> pairs_of(const Hypothesis& hypothesis, const PairRules& rules) {
@@ -154,7 +152,10 @@ void finish(const Segmentation& a, const PairRules& rules, const std::vector<Reg
   matching.doubtful =
       matching.margin < kDoubtfulMargin / kClearMargin || overall_confidence(a, matching.pairs) < kDoubtfulConfidence;
   keep_verdicts(verdicts, matching);
-  matching.next_pin_label_a = most_telling_region(a, matching);
+  std::vector<WeighedAnswer> answers;
+  for (const Hypothesis& hypothesis : all)
+    answers.push_back({hypothesis.structure.partner, weight_beside(hypothesis, all.front())});
+  matching.next_pin_label_a = most_telling_label(a, matching, rules, answers);
 }
 
 /// Turn (no mirror image) that best lays the middles of partners over each other.
@@ -188,8 +189,11 @@ Matching match_published(const Segmentation& a, const Segmentation& b, const Pai
       if (rules.forced(i, j)) matching.pairs.push_back({i + 1, j + 1, kPinned, Verdict::kProposed});
   matching.doubtful = true;
   matching.turn_b_a = turn_of_pairs(a, b, matching.pairs);
-  matching.next_pin_label_a = most_telling_region(a, matching);
   keep_verdicts(verdicts, matching);
+  WeighedAnswer only{std::vector<int>(a.regions.size(), -1), 1};
+  for (const RegionPair& pair : matching.pairs)
+    if (pair.verdict != Verdict::kRejected) only.partner[static_cast<size_t>(pair.label_a - 1)] = pair.label_b - 1;
+  matching.next_pin_label_a = most_telling_label(a, matching, rules, {only});
   return matching;
 }
 
@@ -199,19 +203,39 @@ Result<Ok> MatchParams::validate() const {
   return ParamCheck("MatchParams").in_range("candidates", candidates, 1, 100).result();
 }
 
-Result<Matching> match(const Segmentation& a, const Segmentation& b, const std::vector<Pin>& pins,
-                       const std::vector<RegionPair>& verdicts, const MatchParams& params) {
+struct Matcher::Maps {
+  Segmentation a, b;
+  MatchParams params;
+  std::optional<HypothesisFinder> finder;  ///< of our own method only
+};
+
+Matcher::Matcher(std::shared_ptr<const Maps> maps) : maps_(std::move(maps)) {}
+
+Result<Matcher> Matcher::create(const Segmentation& a, const Segmentation& b, const MatchParams& params) {
   if (const Result<Ok> valid = params.validate(); !valid) return valid.error();
   if (a.regions.empty() || b.regions.empty())
     return fail(Errc::kDegenerate,
                 std::string("the ") + (a.regions.empty() ? "first" : "second") + " map has no region to match");
+  auto maps = std::make_shared<Maps>(Maps{a, b, params, std::nullopt});
+  if (params.method == MatchMethod::kStructure) maps->finder.emplace(a, b, params);
+  return Matcher(std::move(maps));
+}
+
+Result<Matching> Matcher::solve(const std::vector<Pin>& pins, const std::vector<RegionPair>& verdicts) const {
+  const Segmentation &a = maps_->a, &b = maps_->b;
   const Result<PairRules> rules = make_rules(a, b, pins, verdicts);
   if (!rules) return rules.error();
-  if (params.method != MatchMethod::kStructure) return match_published(a, b, *rules, verdicts, params.method);
-  const std::vector<Hypothesis> all = find_hypotheses(a, b, pins_and_confirmed(a, b, pins, verdicts), *rules, params);
+  if (!maps_->finder) return match_published(a, b, *rules, verdicts, maps_->params.method);
   Matching matching;
-  finish(a, *rules, verdicts, all, matching);
+  finish(a, *rules, verdicts, maps_->finder->find(pins_and_confirmed(a, b, pins, verdicts), *rules), matching);
   return matching;
+}
+
+Result<Matching> match(const Segmentation& a, const Segmentation& b, const std::vector<Pin>& pins,
+                       const std::vector<RegionPair>& verdicts, const MatchParams& params) {
+  const Result<Matcher> matcher = Matcher::create(a, b, params);
+  if (!matcher) return matcher.error();
+  return matcher->solve(pins, verdicts);
 }
 
 }  // namespace smokemap

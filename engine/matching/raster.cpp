@@ -71,4 +71,21 @@ MapRaster make_raster(const Segmentation& map, int side_cells, double slope_cell
   return raster;
 }
 
+MapRaster halved(const MapRaster& raster) {
+  const int cols = raster.depth.cols + raster.depth.cols % 2, rows = raster.depth.rows + raster.depth.rows % 2;
+  cv::Mat even(rows, cols, CV_32FC1, cv::Scalar(0));  // what is added lies outside, where depth is nought
+  raster.depth.copyTo(even(cv::Rect(0, 0, raster.depth.cols, raster.depth.rows)));
+  MapRaster half = raster;
+  cv::resize(even, half.depth, cv::Size(cols / 2, rows / 2), 0, 0, cv::INTER_AREA);
+  half.labels = cv::Mat(half.depth.size(), CV_16UC1, cv::Scalar(0));
+  for (int y = 0; y < half.labels.rows; ++y)
+    for (int x = 0; x < half.labels.cols; ++x)
+      half.labels.at<unsigned short>(y, x) = raster.labels.at<unsigned short>(std::min(2 * y, raster.labels.rows - 1),
+                                                                              std::min(2 * x, raster.labels.cols - 1));
+  half.px_per_cell = 2 * raster.px_per_cell;
+  half.origin_px = raster.to_px(Point2(0.5, 0.5));
+  half.free_cells = cv::countNonZero(half.labels);
+  return half;
+}
+
 }  // namespace smokemap

@@ -28,4 +28,7 @@ Eigen::Affine2d pixels_of_cells(const MapRaster& raster);
 /// @param slope_cells half width of the ramp of `depth`
 MapRaster make_raster(const Segmentation& map, int side_cells, double slope_cells);
 
+/// The same with cells twice as wide, depths averaged; cell centres lie between those of the raster given.
+MapRaster halved(const MapRaster& raster);
+
 }  // namespace smokemap

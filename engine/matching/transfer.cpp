@@ -96,6 +96,12 @@ struct Direction {
   }
 };
 
+std::vector<int> as_list(const std::map<int, int>& group_of, const Segmentation& map) {
+  std::vector<int> list(map.regions.size() + 1, -1);
+  for (const auto& [label, group] : group_of) list[static_cast<size_t>(label)] = group;
+  return list;
+}
+
 Handle turned_round(const Handle& handle) { return {handle.p_to, handle.p_from, handle.is_pin}; }
 
 /// Doors of a with the door of b between the same groups that lies nearest to where the boxes put them.
@@ -133,15 +139,15 @@ PointTransfer::PointTransfer(const Segmentation& a, const Segmentation& b, const
   forward.to = backward.from = b.labels.clone();
   const double along_walls = make_raster(b, kWallDirection_cells, 4).wall_direction_rad;
   const Eigen::Matrix2d frame_b = Eigen::Rotation2Dd(-along_walls).toRotationMatrix();
-  std::vector<GroupSide> sides_a, sides_b;
-  std::vector<GroupMap> plain;
   for (size_t g = 0; g < groups.size(); ++g) {
     for (const int label : groups[g].labels_a) forward.group_of_from[label] = static_cast<int>(g);
     for (const int label : groups[g].labels_b) forward.group_of_to[label] = static_cast<int>(g);
-    sides_a.push_back(make_side(a.labels, groups[g].labels_a, frame_b * matching.turn_b_a));
-    sides_b.push_back(make_side(b.labels, groups[g].labels_b, frame_b));
-    plain.emplace_back(sides_a.back(), sides_b.back(), std::vector<Handle>{});
   }
+  const std::vector<GroupSide> sides_a =
+      make_sides(a.labels, as_list(forward.group_of_from, a), groups.size(), frame_b * matching.turn_b_a);
+  const std::vector<GroupSide> sides_b = make_sides(b.labels, as_list(forward.group_of_to, b), groups.size(), frame_b);
+  std::vector<GroupMap> plain;
+  for (size_t g = 0; g < groups.size(); ++g) plain.emplace_back(sides_a[g], sides_b[g], std::vector<Handle>{});
   std::vector<std::vector<Handle>> handles(groups.size());
   add_doors(doors_between(a, forward.group_of_from), doors_between(b, forward.group_of_to), plain, handles);
   for (const Pin& pin : pins) {

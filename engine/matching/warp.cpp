@@ -8,12 +8,10 @@
 namespace smokemap {
 namespace {
 
-struct Stage {
-  double smooth_cells;  ///< sigma of the smoothing of the whole field
-  int rounds;
-};
-constexpr std::array kStages = {Stage{8.0, 12}, Stage{5.0, 14}, Stage{3.5, 14}};
-constexpr float kMaxStep_cells = 1.0f;
+constexpr float kMaxStep_cells = 1.0f;  ///< of the fine raster, as all cells here
+constexpr float kMissWeight = 0.1f;
+constexpr double kWide_cells = 8.0, kMiddle_cells = 5.0, kNarrow_cells = 3.5;  ///< sigmas of the smoothing
+constexpr int kWideRounds = 12, kMiddleRounds = 14, kNarrowRounds = 14;
 constexpr double kBendingWeight = 0.35;
 
 cv::Mat affine_field(const Eigen::Affine2d& cells_b_a, const cv::Size& size) {
@@ -32,24 +30,25 @@ cv::Mat look_up(const cv::Mat& image, const cv::Mat& field) {
   return found;
 }
 
-double cosine(const cv::Mat& one, const cv::Mat& two, double energy_two) {
-  return one.dot(two) / std::sqrt(std::max(1e-9, one.dot(one) * energy_two));
-}
-
-/// Move of every cell that brings its depth closer to that of the other map.
-cv::Mat demon_steps(const MapRaster& a, const cv::Mat& seen, const cv::Mat& seen_gx, const cv::Mat& seen_gy) {
-  cv::Mat steps(a.depth.size(), CV_32FC2);
-  for (int y = 0; y < steps.rows; ++y)
-    for (int x = 0; x < steps.cols; ++x) {
-      const float miss = a.depth.at<float>(y, x) - seen.at<float>(y, x);
-      const float gx = seen_gx.at<float>(y, x), gy = seen_gy.at<float>(y, x);
-      const float weight = gx * gx + gy * gy + miss * miss * 0.1f + 1e-4f;
-      cv::Vec2f step(miss * gx / weight, miss * gy / weight);
-      const float length = std::hypot(step[0], step[1]);
-      if (length > kMaxStep_cells) step *= kMaxStep_cells / length;
-      steps.at<cv::Vec2f>(y, x) = step;
+/// Adds the move of every cell that brings its depth closer to that of the other map.
+/// @param seen  depth of b there, and its slope
+void add_demon_steps(const cv::Mat& depth_a, const cv::Mat& seen, float fine_per_cell, cv::Mat& moves) {
+  const float longest = kMaxStep_cells / fine_per_cell;
+  const float miss_weight = kMissWeight * fine_per_cell * fine_per_cell;
+  for (int y = 0; y < moves.rows; ++y) {
+    const auto* own = depth_a.ptr<float>(y);
+    const auto* other = seen.ptr<cv::Vec3f>(y);
+    auto* move = moves.ptr<cv::Vec2f>(y);
+    for (int x = 0; x < moves.cols; ++x) {
+      const float miss = own[x] - other[x][0], gx = other[x][1], gy = other[x][2];
+      const float slope = gx * gx + gy * gy;
+      if (slope == 0 || miss == 0) continue;
+      const float step = miss / (slope + miss * miss * miss_weight + 1e-4f);
+      const float length = std::abs(step) * std::sqrt(slope);
+      const float kept = length > longest ? step * longest / length : step;
+      move[x] += cv::Vec2f(kept * gx, kept * gy);
     }
-  return steps;
+  }
 }
 
 void pull_to_pins(const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins, double reach_cells,
@@ -83,30 +82,63 @@ double root_mean_square_stretch(const MapRaster& a, const cv::Mat& moves, double
   return count == 0 ? 0 : std::sqrt(sum / count) / scale;
 }
 
+/// A field of moves on a coarser raster, as moves on the finer one.
+cv::Mat refined_moves(const cv::Mat& moves, const cv::Size& size) {
+  cv::Mat places(size, CV_32FC2);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      places.at<cv::Vec2f>(y, x) = {0.5f * (static_cast<float>(x) - 0.5f), 0.5f * (static_cast<float>(y) - 0.5f)};
+  cv::Mat fine;
+  cv::remap(moves, fine, places, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  return 2 * fine;
+}
+
+cv::Mat rigid_field(const MapAlignment& alignment, const MapRaster& a, const MapRaster& b) {
+  return affine_field(pixels_of_cells(b).inverse() * alignment.T_b_a_px * pixels_of_cells(a), a.depth.size());
+}
+
 }  // namespace
 
-Warp bend(const MapAlignment& alignment, const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins) {
-  const Eigen::Affine2d cells_b_a = pixels_of_cells(b).inverse() * alignment.T_b_a_px * pixels_of_cells(a);
-  const cv::Mat rigid = affine_field(cells_b_a, a.depth.size());
-  const double scale = std::sqrt(std::abs(cells_b_a.linear().determinant()));
-  cv::Mat gx, gy, moves(a.depth.size(), CV_32FC2, cv::Scalar::all(0));
-  cv::Sobel(b.depth, gx, CV_32F, 1, 0, 3, 1.0 / 8);
-  cv::Sobel(b.depth, gy, CV_32F, 0, 1, 3, 1.0 / 8);
-  for (const Stage& stage : kStages)
-    for (int round = 0; round < stage.rounds; ++round) {
-      const cv::Mat field = rigid + moves;
-      moves += demon_steps(a, look_up(b.depth, field), look_up(gx, field), look_up(gy, field));
-      cv::GaussianBlur(moves, moves, cv::Size(0, 0), stage.smooth_cells, stage.smooth_cells, cv::BORDER_REPLICATE);
-      pull_to_pins(a, b, pins, 2 * stage.smooth_cells, rigid, moves);
-    }
+BendingPair::Level BendingPair::make_level(const MapRaster& a, const MapRaster& b, double fine_per_cell) {
+  std::array<cv::Mat, 3> seen = {b.depth, {}, {}};
+  cv::Sobel(b.depth, seen[1], CV_32F, 1, 0, 3, 1.0 / 8);
+  cv::Sobel(b.depth, seen[2], CV_32F, 0, 1, 3, 1.0 / 8);
+  Level level{a, b, {}, fine_per_cell};
+  cv::merge(seen.data(), seen.size(), level.seen_b);
+  return level;
+}
+
+BendingPair::BendingPair(const MapRaster& a, const MapRaster& b)
+    : fine_(make_level(a, b, 1)), coarse_(make_level(halved(a), halved(b), 2)) {}
+
+void BendingPair::run_stage(const Level& level, double smooth_cells, int rounds, const std::vector<Pin>& pins,
+                            const cv::Mat& rigid, cv::Mat& moves) {
+  const double sigma = smooth_cells / level.fine_per_cell;
+  for (int round = 0; round < rounds; ++round) {
+    add_demon_steps(level.a.depth, look_up(level.seen_b, rigid + moves), static_cast<float>(level.fine_per_cell),
+                    moves);
+    cv::GaussianBlur(moves, moves, cv::Size(0, 0), sigma, sigma, cv::BORDER_REPLICATE);
+    pull_to_pins(level.a, level.b, pins, 2 * sigma, rigid, moves);
+  }
+}
+
+Warp BendingPair::bend(const MapAlignment& alignment, const std::vector<Pin>& pins) const {
+  const MapRaster &a = fine_.a, &b = fine_.b;
+  cv::Mat moves(coarse_.a.depth.size(), CV_32FC2, cv::Scalar::all(0));
+  const cv::Mat rigid_coarse = rigid_field(alignment, coarse_.a, coarse_.b);
+  run_stage(coarse_, kWide_cells, kWideRounds, pins, rigid_coarse, moves);
+  run_stage(coarse_, kMiddle_cells, kMiddleRounds, pins, rigid_coarse, moves);
+  moves = refined_moves(moves, a.depth.size());
+  const cv::Mat rigid = rigid_field(alignment, a, b);
+  run_stage(fine_, kNarrow_cells, kNarrowRounds, pins, rigid, moves);
   Warp warp;
-  warp.scale = scale;
+  warp.scale = std::sqrt(
+      std::abs((pixels_of_cells(b).inverse() * alignment.T_b_a_px * pixels_of_cells(a)).linear().determinant()));
   warp.cells_b = rigid + moves;
-  const double density = scale * scale;  // cells of b that one cell of a covers
-  warp.likeness = cosine(look_up(b.depth, warp.cells_b), a.depth, a.depth.dot(a.depth));
+  const double density = warp.scale * warp.scale;  // cells of b that one cell of a covers
   const double covered = look_up(b.depth, warp.cells_b).dot(a.depth) * density;
   warp.likeness = covered / std::sqrt(std::max(1e-9, a.depth.dot(a.depth) * density * b.depth.dot(b.depth)));
-  warp.bending = root_mean_square_stretch(a, moves, scale);
+  warp.bending = root_mean_square_stretch(a, moves, warp.scale);
   warp.score = std::min(1.0, warp.likeness) - kBendingWeight * warp.bending;
   return warp;
 }

@@ -1,13 +1,9 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
-#include <optional>
 #include <random>
-#include <set>
 #include <vector>
 
 #include "core/random.hpp"
@@ -93,87 +89,6 @@ inline PlanPicture hall_plan(std::mt19937_64& random) {
   for (size_t i = 0; i < plan.boxes.size(); ++i) plan.rooms(plan.boxes[i]).setTo(static_cast<int>(i) + 1);
   plan.free_space.setTo(255, plan.rooms != 0);
   return plan;
-}
-
-/// What people do to a plan when they draw it from memory.
-struct SketchHabits {
-  int quarter_turns = 0;
-  double scale = 1.2;
-  double stretch = 1.0;  ///< along the corridor over across it
-  double bend_px = 6;    ///< how far walls wander
-  double tilt_rad = 0.03;
-  int rooms_left_out = 0;
-  int doors_forgotten = 0;
-  double uneven = 0;  ///< standard deviation of the logarithm of the scale, drawn anew every 60 px: long corridors get
-                      ///< short, small rooms large
-};
-
-/// The drawing, the true rooms in it, and where every point of it lies on the plan.
-struct PlanSketch {
-  PlanPicture picture;
-  cv::Mat to_plan;  ///< CV_32FC2, plan pixel of every sketch pixel
-  std::set<int> left_out;
-
-  Point2 on_plan(const Point2& p_sketch) const {
-    const cv::Vec2f p =
-        to_plan.at<cv::Vec2f>(static_cast<int>(std::lround(p_sketch.y())), static_cast<int>(std::lround(p_sketch.x())));
-    return {p[0], p[1]};
-  }
-};
-
-/// Where a drawn length ends when the scale changes on the way: monotone, about the identity.
-class UnevenScale {
- public:
-  UnevenScale(double sigma, int length, std::mt19937_64& random) {
-    double at = 0;
-    for (int knot = 0; knot <= length / kStep + 2; ++knot) {
-      ends_.push_back(at);
-      at += kStep * (sigma > 0 ? std::exp(normal(random, sigma)) : 1.0);
-    }
-    middle_ = 0.5 * (length - at * length / (kStep * static_cast<double>(ends_.size())));
-  }
-  double operator()(double x) const {
-    const double place = std::clamp(x / kStep, 0.0, static_cast<double>(ends_.size()) - 1.001);
-    const auto knot = static_cast<size_t>(place);
-    return middle_ + ends_[knot] + (place - static_cast<double>(knot)) * (ends_[knot + 1] - ends_[knot]) +
-           (x < 0 ? x : 0);
-  }
-
- private:
-  static constexpr int kStep = 60;
-  std::vector<double> ends_;
-  double middle_ = 0;
-};
-
-inline PlanSketch sketch_of(const PlanPicture& plan, const SketchHabits& habits, std::mt19937_64& random) {
-  PlanSketch sketch;
-  cv::Mat rooms = plan.rooms.clone();
-  const auto count = static_cast<std::uint64_t>(plan.boxes.size());
-  while (static_cast<int>(sketch.left_out.size()) < habits.rooms_left_out)
-    sketch.left_out.insert(2 + static_cast<int>(uniform_index(random, count - 1)));
-  for (const int room : sketch.left_out) rooms.setTo(0, plan.rooms == room);
-  for (int i = 0; i < habits.doors_forgotten && !plan.doors.empty(); ++i)
-    rooms(plan.doors[uniform_index(random, plan.doors.size())]).setTo(0);
-  const UnevenScale uneven_x(habits.uneven, rooms.cols, random), uneven_y(habits.uneven, rooms.rows, random);
-  const double side = (habits.uneven > 0 ? 1.6 : 1.25) * habits.scale * std::max(rooms.cols, rooms.rows) *
-                      std::max(1.0, habits.stretch);
-  const cv::Size size(static_cast<int>(side), static_cast<int>(side));
-  const double angle = habits.tilt_rad + habits.quarter_turns * std::numbers::pi / 2;
-  const double phase_x = uniform(random, 0, 6), phase_y = uniform(random, 0, 6);
-  sketch.to_plan = cv::Mat(size, CV_32FC2);
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x) {
-      const double dx = x - 0.5 * size.width, dy = y - 0.5 * size.height;
-      const double u = (std::cos(angle) * dx - std::sin(angle) * dy) / (habits.scale * habits.stretch);
-      const double v = (std::sin(angle) * dx + std::cos(angle) * dy) / habits.scale;
-      double px = 0.5 * rooms.cols + u + habits.bend_px * std::sin(v / 55 + phase_x);
-      double py = 0.5 * rooms.rows + v + habits.bend_px * std::sin(u / 70 + phase_y);
-      if (habits.uneven > 0) px = uneven_x(px), py = uneven_y(py);
-      sketch.to_plan.at<cv::Vec2f>(y, x) = {static_cast<float>(px), static_cast<float>(py)};
-    }
-  cv::remap(rooms, sketch.picture.rooms, sketch.to_plan, cv::noArray(), cv::INTER_NEAREST, cv::BORDER_CONSTANT, 0);
-  sketch.picture.free_space = sketch.picture.rooms != 0;
-  return sketch;
 }
 
 /// The true room that most pixels with a label have, and how much the two cover each other (intersection over union).

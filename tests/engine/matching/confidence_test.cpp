@@ -13,7 +13,7 @@ namespace {
 
 std::vector<Hypothesis> hypotheses_of_itself(const Segmentation& map) {
   const auto n = static_cast<Eigen::Index>(map.regions.size());
-  return find_hypotheses(map, map, {}, {Eigen::MatrixXi::Zero(n, n), Eigen::MatrixXi::Zero(n, n)}, {});
+  return HypothesisFinder(map, map, {}).find({}, {Eigen::MatrixXi::Zero(n, n), Eigen::MatrixXi::Zero(n, n)});
 }
 
 TEST(Confidence, RisesWithEveryKindOfEvidenceAndIsNeverQuiteSure) {

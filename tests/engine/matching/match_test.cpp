@@ -2,14 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <map>
+#include <opencv2/imgproc.hpp>
 #include <random>
 #include <set>
 
 #include "core/random.hpp"
 #include "segmentation/segment.hpp"
 #include "tests/support/plan_pictures.hpp"
+#include "tests/support/plan_sketches.hpp"
 #include "tests/support/result_matchers.hpp"
 
 namespace smokemap {
@@ -183,6 +186,112 @@ TEST(Match, AnswersBadInputWithOneClearError) {
   params.candidates = 0;
   EXPECT_THAT(match(map, map, {}, {}, params), test::Fails(Errc::kInvalidArgument));
   EXPECT_THAT(match(map, map, {{Point2(-500, 1e6), Point2(3, 3)}}), test::IsOk());
+}
+
+TEST(Match, DoesNotMindTheScale) {
+  std::mt19937_64 random(9);
+  const test::PlanPicture plan = test::office_plan(random);
+  const test::PlanSketch sketch = test::sketch_of(plan, {}, random);
+  test::PlanPicture large;
+  cv::resize(sketch.picture.rooms, large.rooms, cv::Size(), 2, 2, cv::INTER_NEAREST);
+  const Segmentation a = truth_of(sketch.picture), a_large = truth_of(large), b = truth_of(plan);
+  const auto small = match(a, b), scaled = match(a_large, b);
+  ASSERT_THAT(scaled, test::IsOk());
+  ASSERT_EQ(scaled->pairs.size(), small->pairs.size());
+  EXPECT_EQ(judge(a_large, large.rooms, b, plan.rooms, *scaled).right,
+            judge(a, sketch.picture.rooms, b, plan.rooms, *small).right);
+}
+
+TEST(Match, FindsADrawingSeenFromBelowOnlyWhenAPersonSaysSo) {
+  std::mt19937_64 random(10);
+  const test::PlanPicture plan = test::office_plan(random);
+  test::SketchHabits habits;
+  habits.mirrored = true, habits.quarter_turns = 1;
+  const test::PlanSketch sketch = test::sketch_of(plan, habits, random);
+  const Segmentation a = truth_of(sketch.picture), b = truth_of(plan);
+  MatchParams params;
+  EXPECT_GT(match(a, b, {}, {}, params)->turn_b_a.determinant(), 0);
+  params.allow_mirror = true;
+  const auto mirrored = match(a, b, {}, {}, params);
+  EXPECT_LT(mirrored->turn_b_a.determinant(), 0);
+  EXPECT_GT(judge(a, sketch.picture.rooms, b, plan.rooms, *mirrored).right, 0.95);
+}
+
+TEST(Match, SaysTheSameWhicheverWayTheSheetIsTurned) {
+  std::mt19937_64 random(11);
+  const test::PlanPicture plan = test::office_plan(random);
+  const test::PlanSketch sketch = test::sketch_of(plan, {}, random);
+  const Segmentation b = truth_of(plan), straight = truth_of(sketch.picture);
+  const double wanted = judge(straight, sketch.picture.rooms, b, plan.rooms, *match(straight, b)).right;
+  for (const int code : {cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180}) {
+    test::PlanPicture turned;
+    cv::rotate(sketch.picture.rooms, turned.rooms, code);
+    const Segmentation a = truth_of(turned);
+    EXPECT_NEAR(judge(a, turned.rooms, b, plan.rooms, *match(a, b)).right, wanted, 0.12);  // one room of nine
+  }
+}
+
+TEST(Match, FindsTheRestFromAPartOfTheBuilding) {
+  std::mt19937_64 random(12);
+  double right = 0;
+  const int trials = 4;
+  for (int trial = 0; trial < trials; ++trial) {
+    const test::PlanPicture plan = test::office_plan(random);
+    test::SketchHabits habits;
+    habits.seen = 0.7;
+    const test::PlanSketch part = test::sketch_of(plan, habits, random);
+    const Segmentation a = truth_of(part.picture), b = truth_of(plan);
+    right += judge(a, part.picture.rooms, b, plan.rooms, *match(a, b)).right / trials;
+  }
+  EXPECT_GT(right, 0.5);
+}
+
+TEST(Matcher, AnswersEveryTapAsMatchWould) {
+  std::mt19937_64 random(13);
+  const test::PlanPicture plan = test::office_plan(random);
+  const Segmentation a = truth_of(test::sketch_of(plan, {}, random).picture), b = truth_of(plan);
+  const auto matcher = Matcher::create(a, b);
+  ASSERT_THAT(matcher, test::IsOk());
+  std::vector<Pin> pins;
+  for (int taps = 0; taps < 3; ++taps) {
+    const auto fresh = match(a, b, pins), warm = matcher->solve(pins, {});
+    ASSERT_EQ(warm->pairs.size(), fresh->pairs.size());
+    for (size_t k = 0; k < warm->pairs.size(); ++k) {
+      EXPECT_EQ(warm->pairs[k].label_a, fresh->pairs[k].label_a);
+      EXPECT_EQ(warm->pairs[k].label_b, fresh->pairs[k].label_b);
+      EXPECT_EQ(warm->pairs[k].confidence, fresh->pairs[k].confidence);
+    }
+    const auto region = static_cast<size_t>(taps + 1);
+    pins.push_back({a.regions[region].anchor_px, b.regions[region].anchor_px});
+  }
+}
+
+TEST(Matcher, NeverAsksForARoomThatIsTappedAlready) {
+  std::mt19937_64 random(14);
+  const Segmentation map = truth_of(test::hall_plan(random));
+  const auto matcher = Matcher::create(map, map);
+  std::vector<Pin> pins;
+  std::set<int> asked;
+  for (int taps = 0; taps < 4; ++taps) {
+    const auto matching = matcher->solve(pins, {});
+    if (!matching->next_pin_label_a) break;
+    const int label = *matching->next_pin_label_a;
+    EXPECT_TRUE(asked.insert(label).second);
+    const Point2 p = map.regions[static_cast<size_t>(label - 1)].anchor_px;
+    pins.push_back({p, p});
+  }
+  EXPECT_FALSE(asked.empty());
+}
+
+TEST(Matcher, RefusesWhatMatchRefuses) {
+  std::mt19937_64 random(15);
+  const Segmentation map = truth_of(test::office_plan(random));
+  EXPECT_THAT(Matcher::create(Segmentation(), map), test::Fails(Errc::kDegenerate));
+  MatchParams params;
+  params.candidates = 0;
+  EXPECT_THAT(Matcher::create(map, map, params), test::Fails(Errc::kInvalidArgument));
+  const auto matcher = Matcher::create(map, map);
+  EXPECT_THAT(matcher->solve({}, {{99, 1, 0, Verdict::kRejected}}), test::Fails(Errc::kConflict));
 }
 
 TEST(Match, TakesASingleRoom) {

@@ -78,6 +78,37 @@ TEST(MatchStructure, IsAsGoodAsTryingEveryAssignmentOfSmallGraphs) {
   }
 }
 
+TEST(MatchStructure, IsAsGoodAsTryingEveryAssignmentOfEightRegions) {
+  std::mt19937_64 random(8);
+  for (int trial = 0; trial < 3; ++trial) {
+    const RegionGraph a = random_graph(8, random), b = random_graph(8, random);
+    StructureProblem problem = problem_of(a, b);
+    problem.likeness.setZero();  // three possible partners each, or trying all takes for ever
+    for (int i = 0; i < 8; ++i)
+      for (int k = 0; k < 3; ++k)
+        problem.likeness(i, static_cast<int>(uniform_index(random, 8))) = uniform(random, 0.1, 0.8);
+    problem.many_to_one = trial != 1;
+    const StructureMatch match = match_structure(problem);
+    std::vector<int> partner(8, -1);
+    double best = -1e9;
+    const auto try_all = [&](auto&& self, int depth) -> void {
+      if (depth == 8) {
+        best = std::max(best, structure_energy(problem, partner));
+        return;
+      }
+      for (int j = -1; j < 8; ++j)
+        if (j < 0 || problem.likeness(depth, j) > 0) {
+          partner[static_cast<size_t>(depth)] = j;
+          self(self, depth + 1);
+        }
+      partner[static_cast<size_t>(depth)] = -1;
+    };
+    try_all(try_all, 0);
+    EXPECT_TRUE(match.exact);
+    EXPECT_NEAR(match.energy, best, 1e-9) << "trial " << trial;
+  }
+}
+
 TEST(MatchStructure, FindsAnEightRoomGraphInItselfByStructureAlone) {
   for (std::uint64_t seed = 10; seed < 16; ++seed) {
     std::mt19937_64 random(seed);

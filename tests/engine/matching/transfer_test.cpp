@@ -3,15 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <random>
 
 #include "core/random.hpp"
+#include "matching/chain.hpp"
 #include "matching/match.hpp"
 #include "segmentation/segment.hpp"
 #include "tests/support/plan_pictures.hpp"
+#include "tests/support/plan_sketches.hpp"
 
 namespace smokemap {
 namespace {
@@ -131,6 +134,70 @@ TEST(PointTransfer, TakesDoorsToDoors) {
     ++doors;
   }
   EXPECT_GE(doors, 8);
+}
+
+TEST(PointTransfer, NeverEndsInAWallNorInARoomThatIsNotThePartner) {
+  std::mt19937_64 random(40);
+  for (std::uint64_t seed = 41; seed < 45; ++seed) {
+    const TrueMatch truth(seed, test::random_habits(random));
+    const PointTransfer transfer(truth.a, truth.b, truth.matching, {});
+    for (const Point2& p : truth.points(seed, 150)) {
+      const Transferred there = transfer(p);
+      if (!there.p) continue;
+      const int label_a = room_at(truth.a.labels, p), label_b = room_at(truth.b.labels, *there.p);
+      EXPECT_NE(label_b, 0);
+      EXPECT_TRUE(std::any_of(truth.matching.pairs.begin(), truth.matching.pairs.end(), [&](const RegionPair& pair) {
+        return pair.label_a == label_a && pair.label_b == label_b;
+      }));
+      EXPECT_GT(there.sigma, 0);
+    }
+  }
+}
+
+TEST(PointTransfer, IsAsSureAsItIsRightOnDrawingsOfAllHabits) {
+  // Two in three lie within one and a half standard deviations per coordinate if the errors are normal.
+  std::mt19937_64 random(50);
+  double within = 0, all = 0;
+  for (std::uint64_t seed = 51; seed < 59; ++seed) {
+    const TrueMatch truth(seed, test::random_habits(random));
+    const PointTransfer transfer(truth.a, truth.b, truth.matching, {});
+    for (const Point2& p : truth.points(seed, 100))
+      if (const Transferred there = transfer(p); there.p)
+        all += 1, within += (*there.p - truth.sketch.on_plan(p)).norm() < 1.5 * there.sigma;
+  }
+  EXPECT_GT(within / all, 0.65);
+}
+
+TEST(PointTransfer, GoesFromSketchOverPlanToMapAndBack) {
+  // A sketch of a plan, and a map that is the plan turned and half as large again.
+  const TrueMatch truth(60, {});
+  const PointTransfer to_plan(truth.a, truth.b, truth.matching, {});
+  const Eigen::Rotation2Dd turn(0.4);
+  const PointWay to_map = [&](const Point2& p) {
+    Transferred there;
+    there.p = 1.5 * (turn * p), there.sigma = 2, there.confidence = 0.9;
+    return there;
+  };
+  const PointWay from_map = [&](const Point2& p) {
+    Transferred there;
+    there.p = turn.inverse() * p / 1.5, there.sigma = 2 / 1.5, there.confidence = 0.9;
+    return there;
+  };
+  const PointWay there = chained(to_plan, to_map);
+  const PointWay back = chained(from_map, [&](const Point2& p) { return to_plan.inverse(p); });
+  double squared = 0, variance = 0;
+  const auto points = truth.points(4, 150);
+  for (const Point2& p : points) {
+    const Transferred on_map = there(p);
+    ASSERT_TRUE(on_map.p.has_value());
+    EXPECT_GT(on_map.sigma, 1.4 * to_plan(p).sigma);
+    EXPECT_NEAR(on_map.confidence, 0.81, 1e-9);
+    const Transferred home = carry_on(on_map, back);
+    ASSERT_TRUE(home.p.has_value());
+    squared += (*home.p - p).squaredNorm() / 2, variance += home.sigma * home.sigma;
+  }
+  EXPECT_LT(std::sqrt(squared / 150), 8);
+  EXPECT_LT(squared, variance);
 }
 
 TEST(PointTransfer, SaysWhyThereIsNoPlace) {
