@@ -77,10 +77,20 @@ Result<nlohmann::json> against_relations(const Trajectory& estimate, const Evalu
   }
   const auto error = relation_error(estimate, *relations, odometry, options.longest_gap_s);
   if (!error) return error.error();
-  return nlohmann::json{{"relations", error->relations},
+  if (error->missing > 0 && options.log.empty())
+    return fail(Errc::kDegenerate,
+                std::to_string(error->missing) + " of " + std::to_string(relations->size()) +
+                    " relations have no pose near both of their stamps, so a mean would say nothing; "
+                    "give --log: its odometry fills stamps between poses");
+  nlohmann::json report{{"relations", error->relations},
                         {"missing", error->missing},
                         {"translation_m", to_json(error->translation_m, 1)},
                         {"rotation_deg", to_json(error->rotation_rad, degrees(1))}};
+  if (error->clear > 0)
+    report["clear_stamps"] = {{"relations", error->clear},
+                              {"translation_m", to_json(error->clear_translation_m, 1)},
+                              {"rotation_deg", to_json(error->clear_rotation_rad, degrees(1))}};
+  return report;
 }
 
 Result<nlohmann::json> against_truth(const Trajectory& estimate, const EvaluateOptions& options) {

@@ -20,7 +20,7 @@ bool BackEnd::add(NewNode node, const Progress& progress) {
   const int id = static_cast<int>(graph_.nodes.size()) - 1;
   if (new_piece) {
     piece_begin_ = id;
-    relocation_way_m_ = scans_.way_m.back();
+    relocation_way_m_ = scans_.way_m(id);
   }
   if (piece_begin_ >= 0 && relocate(id)) return solve(progress) || true;
   if (!search_due(id)) return false;
@@ -32,7 +32,13 @@ bool BackEnd::add(NewNode node, const Progress& progress) {
     if (edge.from < piece_begin_) piece_begin_ = -1;
   loops_.insert(loops_.end(), found.edges.begin(), found.edges.end());
   compose_edges();
-  return solve(progress);  // at once: the next search starts from the corrected poses
+  // At once, so that the next search starts from the corrected poses; but along a way driven again one loop after
+  // another says the same, and on long runs solving for each would be most of the work.
+  const bool news = std::any_of(found.edges.begin(), found.edges.end(), [this](const PoseEdge& edge) {
+    return edge_error_sigmas(edge, graph_.nodes[at_node(edge.from)].T_map_robot,
+                             graph_.nodes[at_node(edge.to)].T_map_robot) > params_.graph.agrees_within;
+  });
+  return news && solve(progress);
 }
 
 void BackEnd::append(NewNode added) {
@@ -42,20 +48,18 @@ void BackEnd::append(NewNode added) {
   if (id > 0) {
     const PoseNode& last = graph_.nodes.back();
     added.node.T_map_robot = last.T_map_robot * added.edge.T_from_to;
-    way = scans_.way_m.back() + added.edge.T_from_to.translation().norm();
+    way = scans_.way_m(id - 1) + added.edge.T_from_to.translation().norm();
     steps_.push_back(added.edge);
     steps_.back().from = id - 1;
     steps_.back().to = id;
     graph_.edges.insert(graph_.edges.begin() + static_cast<std::ptrdiff_t>(steps_.size() - 1), steps_.back());
   }
   graph_.nodes.push_back(std::move(added.node));
-  added.surface.shrink_to_fit();
-  scans_.surface.push_back(std::move(added.surface));
-  scans_.way_m.push_back(way);
+  scans_.add(added.surface, way, added.by_radar);
 }
 
 bool BackEnd::search_due(int node) {
-  const double way = scans_.way_m[at_node(node)];
+  const double way = scans_.way_m(node);
   if (way - searched_way_m_ < params_.loops.search_every_m) return false;
   searched_way_m_ = way;
   return true;
@@ -63,7 +67,7 @@ bool BackEnd::search_due(int node) {
 
 /// A robot that was carried, or came out of a place without any structure, is looked for in the whole map.
 bool BackEnd::relocate(int node) {
-  const double way = scans_.way_m[at_node(node)];
+  const double way = scans_.way_m(node);
   if (node - piece_begin_ + 1 < params_.loops.joint_nodes || way - relocation_way_m_ < kRelocateEvery_m) return false;
   relocation_way_m_ = way;
   ++tried_;

@@ -12,6 +12,7 @@ struct NewNode {
   std::vector<SurfacePoint> surface;
   PoseEdge edge;           ///< from the last node; ignored for the first
   bool new_piece = false;  ///< nothing had fitted for a while: the robot may be anywhere
+  bool by_radar = false;
 };
 
 /// What the back end made of the nodes it was given so far.

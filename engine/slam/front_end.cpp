@@ -22,9 +22,21 @@ Eigen::Matrix3d spread(const PredictedStep& step) {
 
 }  // namespace
 
-FrontEnd::FrontEnd(const SlamParams& params) : params_(params), map_(params.front_end.cell_m) {}
+FrontEnd::FrontEnd(const SlamParams& params)
+    : by_lidar_(params), by_radar_(params.for_radar()), params_(params), map_(params.front_end.cell_m) {}
+
+/// The local map is made anew with the cells of the sensor that is to be matched.
+void FrontEnd::match_as(bool radar) {
+  if (radar == as_radar_) return;
+  as_radar_ = radar;
+  params_ = radar ? by_radar_ : by_lidar_;
+  usual_score_ = 0;  // scores of the two do not compare
+  map_ = SurfaceMap(params_.front_end.cell_m);
+  if (started_) rebuild_map();
+}
 
 FrontEnd::Tracked FrontEnd::track(const ScanPoints& points, const PredictedStep& step) {
+  match_as(points.by_radar);
   const bool too_few = points.surface.size() < static_cast<std::size_t>(params_.points.least_points);
   if (!started_) return too_few ? answer(ScanFate::kTooFewPoints, 0) : begin_piece(points, ScanFate::kFirst);
 
@@ -42,10 +54,7 @@ FrontEnd::Tracked FrontEnd::track(const ScanPoints& points, const PredictedStep&
   T_track_robot_ = found.T_map_robot;
   blind_covariance_ = match_covariance(found);
   Tracked tracked = answer(ScanFate::kMatched, found.score);
-  if (far_from_last_node()) {
-    tracked.node = true;
-    keep(points);
-  }
+  if (far_from_last_node()) keep(points, tracked);
   return tracked;
 }
 
@@ -66,9 +75,8 @@ FrontEnd::Tracked FrontEnd::go_on_blindly(const ScanPoints& points, const Pose2&
   if (++poor_in_a_row_ >= params_.front_end.lost_after_scans) return begin_piece(points, ScanFate::kNewPiece);
   Tracked tracked = answer(ScanFate::kPoorMatch, score);
   if (step.by_odometry && far_from_last_node()) {
-    tracked.node = true;
     tracked.kind = EdgeKind::kOdometry;
-    keep(points);
+    keep(points, tracked);
   }
   return tracked;
 }
@@ -114,15 +122,17 @@ bool FrontEnd::far_from_last_node() const {
          std::abs(moved.heading()) >= params_.front_end.node_every_rad;
 }
 
-void FrontEnd::keep(const ScanPoints& points) {
-  nodes_.push_back({T_track_robot_, points.surface});
+void FrontEnd::keep(const ScanPoints& points, Tracked& tracked) {
+  tracked.node = true;
+  tracked.hits_robot = lasting(points);
+  nodes_.push_back({T_track_robot_, points.surface, points.by_radar});
   while (nodes_.size() > static_cast<std::size_t>(params_.front_end.map_nodes)) nodes_.pop_front();
   blind_covariance_.setZero();
   predicted_covariance_.setZero();
   if (++nodes_since_rebuild_ >= kRebuildEveryNodes || !map_.covers(T_track_robot_.translation(), 0.7 * kMapHalfSize_m))
     rebuild_map();
   else
-    map_.add(points.surface, T_track_robot_);
+    add_to_map(nodes_.back());
 }
 
 void FrontEnd::rebuild_map() {
@@ -130,17 +140,38 @@ void FrontEnd::rebuild_map() {
   map_.reset(T_track_robot_.translation(), kMapHalfSize_m);
   for (const Node& node : nodes_)
     if ((node.T_track_node.translation() - T_track_robot_.translation()).norm() <= params_.front_end.map_reach_m)
-      map_.add(node.surface, node.T_track_node);
+      add_to_map(node);
+}
+
+/// Beside a lidar's points a radar's count as much as they are exact.
+void FrontEnd::add_to_map(const Node& node) {
+  if (!node.by_radar || as_radar_) return map_.add(node.surface, node.T_track_node);
+  const double exactness = by_lidar_.align.sigma_point_m / by_radar_.align.sigma_point_m;
+  std::vector<SurfacePoint> light = node.surface;
+  for (SurfacePoint& point : light) point.weight *= exactness * exactness;
+  map_.add(light, node.T_track_node);
+}
+
+/// Ghosts of multi-path do not stay in place: an echo is drawn once the local map, seen from elsewhere, has a surface
+/// there. The first node knows no other place and draws nothing.
+std::shared_ptr<const std::vector<Point2>> FrontEnd::lasting(const ScanPoints& points) const {
+  if (!points.by_radar || !points.hits_robot) return points.hits_robot;
+  std::vector<Point2> kept;
+  SurfaceMap::Surface surface;
+  for (const Point2& p : *points.hits_robot)
+    if (map_.nearest(T_track_robot_ * p, Point2::Zero(), by_radar_.radar.lasting_within_m, -1, surface))
+      kept.push_back(p);
+  return std::make_shared<const std::vector<Point2>>(std::move(kept));
 }
 
 FrontEnd::Tracked FrontEnd::begin_piece(const ScanPoints& points, ScanFate fate) {
   Tracked tracked = answer(fate, 0);
-  tracked.node = true;
   tracked.kind = EdgeKind::kOdometry;
   started_ = true;
   poor_in_a_row_ = 0;
   nodes_.clear();
-  keep(points);
+  map_.reset(T_track_robot_.translation(), kMapHalfSize_m);
+  keep(points, tracked);
   rebuild_map();
   return tracked;
 }

@@ -20,7 +20,9 @@ enum class ScanFate : std::uint8_t {
 };
 
 /// The fast half: one scan after another against a local map of the last nodes, in a frame `track` that is smooth and
-/// drifts. It never waits for the graph and never jumps when the graph is solved.
+/// drifts. It never waits for the graph and never jumps when the graph is solved. The nodes of the local map count
+/// together: a scan is registered jointly to all of them (as CFEAR does with its last keyframes). Lidar and radar may
+/// take turns; each is matched by its own parameters, also against what the other has left in the map.
 class FrontEnd {
  public:
   struct Tracked {
@@ -31,6 +33,9 @@ class FrontEnd {
     Pose2 T_node_robot;                                    ///< from the last node (before this one, if this is one)
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of T_node_robot, frame of that node
     EdgeKind kind = EdgeKind::kMatched;
+    /// Of a node: what may be drawn. All hits of a lidar; of the radar's those that an earlier node, from another
+    /// place, has seen too: what mirrors show moves when the radar does.
+    std::shared_ptr<const std::vector<Point2>> hits_robot;
   };
 
   explicit FrontEnd(const SlamParams& params);
@@ -42,7 +47,11 @@ class FrontEnd {
   struct Node {
     Pose2 T_track_node;
     std::vector<SurfacePoint> surface;
+    bool by_radar;
   };
+  void match_as(bool radar);
+  void add_to_map(const Node& node);
+  std::shared_ptr<const std::vector<Point2>> lasting(const ScanPoints& points) const;
   ScanAlignment match(const std::vector<SurfacePoint>& surface, const Pose2& predicted, const PredictedStep& step);
   bool believable(const ScanAlignment& found, const Pose2& predicted, const PredictedStep& step) const;
   Tracked go_on_blindly(const ScanPoints& points, const Pose2& predicted, const PredictedStep& step, double score);
@@ -50,13 +59,15 @@ class FrontEnd {
   ScanAlignment search(const std::vector<SurfacePoint>& surface, const PosePrior& prior, const PredictedStep& step,
                        const ScanAlignment& so_far);
   bool far_from_last_node() const;
-  void keep(const ScanPoints& points);
   void rebuild_map();
+  void keep(const ScanPoints& points, Tracked& tracked);
   Tracked begin_piece(const ScanPoints& points, ScanFate fate);
   Eigen::Matrix3d match_covariance(const ScanAlignment& alignment) const;
   Tracked answer(ScanFate fate, double score) const;
 
-  SlamParams params_;
+  SlamParams by_lidar_, by_radar_;
+  bool as_radar_ = false;
+  SlamParams params_;  ///< one of the two
   SurfaceMap map_;
   std::deque<Node> nodes_;
   int nodes_since_rebuild_ = 0;

@@ -2,7 +2,7 @@
 
 #include <ceres/ceres.h>
 
-#include <array>
+#include <algorithm>
 
 #include "slam/graph_edge_cost.hpp"
 
@@ -40,6 +40,15 @@ Result<ceres::Solver::Summary> solve_once(const PoseGraph& graph, State& state, 
 
 Pose2 pose_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
+double largest_loop_error(const PoseGraph& graph) {
+  double most = 0;
+  for (const PoseEdge& edge : graph.edges)
+    if (edge.kind == EdgeKind::kLoop)
+      most = std::max(most, edge_error_sigmas(edge, graph.nodes[static_cast<std::size_t>(edge.from)].T_map_robot,
+                                              graph.nodes[static_cast<std::size_t>(edge.to)].T_map_robot));
+  return most;
+}
+
 int judge_loops(PoseGraph& graph) {
   int rejected = 0;
   for (PoseEdge& edge : graph.edges) {
@@ -69,7 +78,10 @@ Result<SolveSummary> solve_pose_graph(PoseGraph& graph, const GraphParams& param
   State state;
   for (const PoseNode& node : graph.nodes) state.push_back(node.T_map_robot.vector());
   bool first = true;
+  // Wide kernels are for loops that pull from afar; where all lie in the narrow one already it says the same at once.
+  const bool all_near = largest_loop_error(graph) < params.loop_kernel;
   for (const double widen : {8.0, 2.0, 1.0}) {
+    if (all_near && widen > 1) continue;
     if (progress.cancelled()) return fail(Errc::kCancelled, "pose graph solve stopped");
     const auto summary = solve_once(graph, state, widen * params.loop_kernel);
     if (!summary) return summary.error();

@@ -49,7 +49,15 @@ double sigmas_of(const Pose2& T_map_before, const Pose2& T_map_after, const Eige
 
 }  // namespace
 
-LoopCloser::LoopCloser(const SlamParams& params) : params_(params), target_(params.front_end.cell_m) {}
+LoopCloser::LoopCloser(const SlamParams& params)
+    : by_lidar_(params), by_radar_(params.for_radar()), params_(params), target_(params.front_end.cell_m) {}
+
+void LoopCloser::match_as(bool radar) {
+  if (radar == as_radar_) return;
+  as_radar_ = radar;
+  params_ = radar ? by_radar_ : by_lidar_;
+  target_ = SurfaceMap(params_.front_end.cell_m);
+}
 
 LoopCloser::Found LoopCloser::close(const PoseGraph& graph, const NodeScans& scans, int node) {
   Found found;
@@ -68,7 +76,7 @@ std::vector<LoopCloser::Candidate> LoopCloser::candidates(const PoseGraph& graph
   const Point2 here = graph.nodes[index(node)].T_map_robot.translation();
   std::vector<std::pair<double, Candidate>> near;
   for (int j = 0; j < node; ++j) {
-    const double way = std::min(distance[index(j)].way_m, scans.way_m[index(node)] - scans.way_m[index(j)]);
+    const double way = std::min(distance[index(j)].way_m, scans.way_m(node) - scans.way_m(j));
     if (way < limits.least_way_m) continue;
     Candidate candidate{j, 0, 0, distance[index(j)].covariance_at(here)};
     const double sigma_m = limits.sigma_base_m + limits.drift_share * way, sigma_rad = limits.sigma_base_rad;
@@ -83,7 +91,7 @@ std::vector<LoopCloser::Candidate> LoopCloser::candidates(const PoseGraph& graph
   std::vector<Candidate> chosen;
   for (const auto& [share, candidate] : near) {
     const bool same_visit = std::any_of(chosen.begin(), chosen.end(), [&, j = candidate.node](const Candidate& other) {
-      return std::abs(scans.way_m[index(other.node)] - scans.way_m[index(j)]) < 2 * limits.least_way_m;
+      return std::abs(scans.way_m(other.node) - scans.way_m(j)) < 2 * limits.least_way_m;
     });
     if (!same_visit) chosen.push_back(candidate);
     if (chosen.size() == kMostCandidates) break;
@@ -93,6 +101,7 @@ std::vector<LoopCloser::Candidate> LoopCloser::candidates(const PoseGraph& graph
 
 bool LoopCloser::try_candidate(const PoseGraph& graph, const NodeScans& scans, int node, const Candidate& candidate,
                                Found& found) {
+  match_as(scans.either_by_radar(node, candidate.node));
   const LoopParams& limits = params_.loops;
   draw_target(graph, scans, node, candidate.node, candidate.radius_m);
   const std::vector<SurfacePoint> joint = joint_scan(graph, scans, node, limits.joint_nodes);
@@ -127,7 +136,6 @@ std::optional<PoseEdge> LoopCloser::verified(const PoseGraph& graph, const NodeS
 
 std::optional<PoseEdge> LoopCloser::find_anywhere(const PoseGraph& graph, const NodeScans& scans, int node,
                                                   int piece_begin) {
-  const LoopParams& limits = params_.loops;
   const std::vector<SurfacePoint> joint = joint_scan(graph, scans, node, std::min(kWideJoint, node - piece_begin + 1));
   const std::vector<Point2> points = thinned(joint, kWideReach_m);
   if (points.size() < index(params_.points.least_points)) return std::nullopt;
@@ -142,10 +150,11 @@ std::optional<PoseEdge> LoopCloser::find_anywhere(const PoseGraph& graph, const 
     if (std::any_of(centers.begin(), centers.end(), [&](const Point2& c) { return (c - here).norm() < kRegion_m; }))
       continue;
     centers.push_back(here);
+    match_as(scans.either_by_radar(node, j));
     draw_region(graph, scans, j, piece_begin);
     if (target_.empty()) continue;
     const SearchWindow window{Pose2(here, 0), 0.75 * kRegion_m, kPi};
-    if (const auto found = search_pose(points, target_grid(), window, limits.least_search_score, 0.6))
+    if (const auto found = search_pose(points, target_grid(), window, params_.loops.least_search_score, 0.6))
       places.push_back({j, *found});
   }
   const auto best = std::max_element(places.begin(), places.end(),
@@ -158,6 +167,7 @@ std::optional<PoseEdge> LoopCloser::find_anywhere(const PoseGraph& graph, const 
       second = std::max(second, other.found.score);
   }
   if (second > kAloneWithin * best->found.score) return std::nullopt;
+  match_as(scans.either_by_radar(node, best->around));
   draw_region(graph, scans, best->around, piece_begin);
   return verified(graph, scans, node, best->around, align(joint, target_, best->found.T_map_robot, params_.align));
 }
@@ -168,7 +178,7 @@ void LoopCloser::draw_region(const PoseGraph& graph, const NodeScans& scans, int
   target_.reset(middle, kTargetHalfSize_m);
   for (int j = 0; j < end; ++j)
     if ((graph.nodes[index(j)].T_map_robot.translation() - middle).norm() < 1.5 * kRegion_m)
-      target_.add(scans.surface[index(j)], graph.nodes[index(j)].T_map_robot);
+      target_.add(scans.surface(j), graph.nodes[index(j)].T_map_robot);
 }
 
 LikelihoodGrid LoopCloser::target_grid() const {
@@ -184,8 +194,8 @@ void LoopCloser::draw_target(const PoseGraph& graph, const NodeScans& scans, int
   const int last = std::min(around + kTargetNodes, node - 1);
   for (int j = std::max(0, around - kTargetNodes); j <= last; ++j) {
     if ((graph.nodes[index(j)].T_map_robot.translation() - middle).norm() > kTargetReach_m) continue;
-    if (scans.way_m[index(node)] - scans.way_m[index(j)] < 0.5 * params_.loops.least_way_m) continue;
-    target_.add(scans.surface[index(j)], graph.nodes[index(j)].T_map_robot);
+    if (scans.way_m(node) - scans.way_m(j) < 0.5 * params_.loops.least_way_m) continue;
+    target_.add(scans.surface(j), graph.nodes[index(j)].T_map_robot);
   }
 }
 
@@ -196,7 +206,7 @@ std::vector<SurfacePoint> LoopCloser::joint_scan(const PoseGraph& graph, const N
   for (int i = node; i > std::max(-1, node - count); --i) {
     const Pose2 T_node_i = T_node_map * graph.nodes[index(i)].T_map_robot;
     const Eigen::Matrix2d R = T_node_i.rotation();
-    for (const SurfacePoint& s : scans.surface[index(i)]) joint.push_back({T_node_i * s.p, R * s.normal, s.weight});
+    for (const SurfacePoint& s : scans.surface(i)) joint.push_back({T_node_i * s.p, R * s.normal, s.weight});
   }
   return joint;
 }
@@ -207,7 +217,7 @@ bool LoopCloser::singles_agree(const PoseGraph& graph, const NodeScans& scans, i
   for (int i = node; i > std::max(-1, node - params_.loops.joint_nodes); i -= 2) {
     const Pose2 expected =
         T_map_node * (graph.nodes[index(node)].T_map_robot.inverse() * graph.nodes[index(i)].T_map_robot);
-    const ScanAlignment alone = align(scans.surface[index(i)], target_, expected, params_.align);
+    const ScanAlignment alone = align(scans.surface(i), target_, expected, params_.align);
     const Pose2 off = expected.inverse() * alone.T_map_robot;
     // Along a corridor a single scan may slide: only what its points measure can disagree.
     Eigen::Vector3d error = (alone.T_map_robot.vector() - expected.vector());

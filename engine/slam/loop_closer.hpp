@@ -48,7 +48,12 @@ class LoopCloser {
   std::vector<SurfacePoint> joint_scan(const PoseGraph& graph, const NodeScans& scans, int node, int count) const;
   bool singles_agree(const PoseGraph& graph, const NodeScans& scans, int node, const Pose2& T_map_node) const;
 
-  SlamParams params_;
+  /// Where either side is the radar's, its gates and scores hold.
+  void match_as(bool radar);
+
+  SlamParams by_lidar_, by_radar_;
+  bool as_radar_ = false;
+  SlamParams params_;  ///< one of the two
   SurfaceMap target_;
 };
 

@@ -23,6 +23,25 @@ Eigen::Matrix3d displacement(const PoseGraph& graph, const PoseEdge& edge) {
 
 }  // namespace
 
+void NodeScans::add(const std::vector<SurfacePoint>& surface, double way_m, bool by_radar) {
+  Scan scan{{}, way_m, by_radar};
+  scan.points.reserve(surface.size());
+  for (const SurfacePoint& s : surface)
+    scan.points.push_back({static_cast<float>(s.p.x()), static_cast<float>(s.p.y()), static_cast<float>(s.normal.x()),
+                           static_cast<float>(s.normal.y()), static_cast<float>(s.weight)});
+  scans_.push_back(std::move(scan));
+}
+
+std::vector<SurfacePoint> NodeScans::surface(int node) const {
+  std::vector<SurfacePoint> points;
+  points.reserve(scan(node).points.size());
+  for (const Packed& p : scan(node).points)
+    points.push_back({Point2(static_cast<double>(p.x), static_cast<double>(p.y)),
+                      Point2(static_cast<double>(p.normal_x), static_cast<double>(p.normal_y)),
+                      static_cast<double>(p.weight)});
+  return points;
+}
+
 Result<Eigen::Matrix3d> edge_sqrt_information(const Eigen::Matrix3d& information_map, double heading, double sigma_m,
                                               double sigma_rad) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
@@ -51,7 +70,7 @@ std::vector<GraphDistance> graph_distances(const PoseGraph& graph, const NodeSca
     const PoseEdge& edge = graph.edges[e];
     if (edge.state == LinkState::kRejected) continue;
     const auto a = static_cast<std::size_t>(edge.from), b = static_cast<std::size_t>(edge.to);
-    const double way = std::abs(scans.way_m[a] - scans.way_m[b]);
+    const double way = std::abs(scans.way_m(edge.from) - scans.way_m(edge.to));
     const double length = b == a + 1 ? way : std::min(way, jump_m);
     links[a].push_back({b, e, length});
     links[b].push_back({a, e, length});

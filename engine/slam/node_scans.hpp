@@ -7,10 +7,33 @@
 
 namespace smokemap {
 
-/// What the back end knows of each node beyond the graph, by node id.
-struct NodeScans {
-  std::vector<std::vector<SurfacePoint>> surface;  ///< robot frame
-  std::vector<double> way_m;                       ///< driven until the node
+/// What the back end knows of each node beyond the graph, by node id. Points are kept in single precision (a
+/// micrometre at 10 m): with everything else of the graph they are most of what a long run needs.
+class NodeScans {
+ public:
+  /// @param surface  robot frame
+  /// @param way_m    driven until the node
+  /// @param by_radar  points of the radar alone: matching with them allows for it
+  void add(const std::vector<SurfacePoint>& surface, double way_m, bool by_radar);
+
+  std::size_t size() const { return scans_.size(); }
+  std::vector<SurfacePoint> surface(int node) const;
+  bool empty(int node) const { return scan(node).points.empty(); }
+  double way_m(int node) const { return scan(node).way_m; }
+  bool either_by_radar(int a, int b) const { return scan(a).by_radar || scan(b).by_radar; }
+
+ private:
+  struct Packed {
+    float x, y, normal_x, normal_y, weight;
+  };
+  struct Scan {
+    std::vector<Packed> points;
+    double way_m = 0;
+    bool by_radar = false;
+  };
+  const Scan& scan(int node) const { return scans_[static_cast<std::size_t>(node)]; }
+
+  std::vector<Scan> scans_;
 };
 
 /// Covariance of a match as an edge needs it: information of (x, y, heading) given in the map frame, turned into the

@@ -16,8 +16,16 @@ class PairMatcher {
 
  private:
   std::vector<int> partners(const PoseGraph& graph, const NodeScans& scans, int node) const;
+  struct Matching {
+    AlignParams align;
+    double least_score;
+    SurfaceMap target;
+  };
+  void match_target(const PoseGraph& graph, const NodeScans& scans, int target, const std::vector<int>& sources,
+                    Matching& matching, std::vector<PoseEdge>& edges) const;
+
   SlamParams params_;
-  SurfaceMap target_;
+  Matching by_lidar_, by_radar_;  ///< the second where either node is the radar's
 };
 
 }  // namespace smokemap

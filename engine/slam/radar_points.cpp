@@ -91,6 +91,7 @@ ScanPoints surface_points(const RadarSweep& sweep, const Twist2& twist, const Ra
   const EchoGrid near(echoes, radar.surface_radius_m), crowded(echoes, radar.spacing_m);
   const Point2 p_sensor = sweep.T_robot_radar.translation();
   ScanPoints out;
+  out.by_radar = true;
   std::vector<Point2> hits;
   std::vector<bool> drawn(static_cast<std::size_t>(sweep.azimuths), false);
   std::vector<const RadarEcho*> kept, by_weight;

@@ -13,6 +13,7 @@ namespace smokemap {
 namespace {
 
 constexpr double kSweepIsFresh_s = 1.0;
+constexpr double kLidarIsSilent_s = 2.0;
 constexpr double kSmokeMemory = 0.3;  ///< share of the newest scan in the estimate of smoke
 constexpr double kClearShare = 0.35;  ///< radar and lidar disagree on so many beams in clear air
 constexpr double kSmokeIsAll = 0.75;
@@ -79,13 +80,13 @@ class Slam::Impl {
   GraphWork work_;
   PoseGraph graph_;  ///< nodes and the front end's edges as they come, the rest as of the newest update
   SlamCounters counters_;
-  std::optional<FrontEnd> front_;  ///< with the first scan or sweep, which says what kind of points come
+  std::optional<FrontEnd> front_;  ///< with the first scan or sweep
   std::unique_ptr<GraphWorker> worker_;
 
  private:
   ScanOutcome add_points(Stamp stamp, const std::string& robot, const ScanPoints& points);
   PredictedStep predict(Stamp stamp);
-  void begin(const SlamParams& matching);
+  void begin();
   ScanPoints points_of(const LaserScan& scan);
   Pose2 track_pose() const { return front_ ? front_->T_track_robot() : Pose2(); }
   Pose2 pose_of(const Anchor& anchor) const;
@@ -102,7 +103,7 @@ class Slam::Impl {
   std::optional<Pose2> T_odom_sweep_;
   bool sweep_is_new_ = false;
   double smoke_share_ = 0;
-  bool has_lidar_ = false;
+  std::optional<Stamp> lidar_stamp_;  ///< of the newest scan
   std::vector<Anchor> anchors_;       ///< one per scan
   std::vector<Pose2> T_track_nodes_;  ///< where the front end put each node
   Pose2 T_odom_robot_;
@@ -114,14 +115,14 @@ Result<ScanOutcome> Slam::Impl::add_scan(const LaserScan& scan) {
     return sound.error();
   }
   ++counters_.scans;
-  has_lidar_ = true;
+  lidar_stamp_ = scan.stamp;
   if (last_stamp_ == scan.stamp && last_ranges_ == scan.ranges_m && !anchors_.empty()) {
     ++counters_.duplicates;
     anchors_.push_back(anchors_.back());
     return ScanOutcome{scan.stamp, ScanFate::kDuplicate, latest(), std::nullopt, 0};
   }
   last_ranges_ = scan.ranges_m;
-  begin(params_);
+  begin();
   return add_points(scan.stamp, scan.robot, points_of(scan));
 }
 
@@ -131,21 +132,21 @@ Result<ScanOutcome> Slam::Impl::add_sweep(const RadarSweep& sweep) {
     return sound.error();
   }
   ++counters_.sweeps;
-  if (has_lidar_) {
+  if (lidar_stamp_ && to_seconds(sweep.stamp - *lidar_stamp_) < kLidarIsSilent_s) {
     last_sweep_ = sweep;
     sweep_is_new_ = true;
     T_odom_sweep_ = odometry_.at(sweep.stamp);
     return ScanOutcome{sweep.stamp, ScanFate::kMatched, latest(), std::nullopt, 0};
   }
-  begin(params_.for_radar());
+  begin();
   return add_points(sweep.stamp, sweep.robot,
                     surface_points(sweep, twist_for_straightening(), params_.radar, params_.points));
 }
 
-void Slam::Impl::begin(const SlamParams& matching) {
+void Slam::Impl::begin() {
   if (front_) return;
-  front_.emplace(matching);
-  worker_ = std::make_unique<GraphWorker>(matching, work_);
+  front_.emplace(params_);
+  worker_ = std::make_unique<GraphWorker>(params_, work_);
 }
 
 /// The lidar's points; beams that the newest sweep calls smoke left out. The thicker the smoke, the more the radar's
@@ -210,7 +211,7 @@ void Slam::Impl::keep_node(Stamp stamp, const std::string& robot, const ScanPoin
   node.T_map_robot =
       graph_.nodes.empty() ? params_.T_map_start : graph_.nodes.back().T_map_robot * tracked.T_node_robot;
   node.T_odom_robot = T_odom_robot_;
-  node.hits_robot = points.hits_robot;
+  node.hits_robot = tracked.hits_robot;
   node.free_ends_robot = points.free_ends_robot;
   PoseEdge edge;
   edge.from = node.id - 1;
@@ -224,7 +225,7 @@ void Slam::Impl::keep_node(Stamp stamp, const std::string& robot, const ScanPoin
     graph_.edges.insert(graph_.edges.begin() + node.id - 1, edge);
   }
   graph_.nodes.push_back(node);
-  worker_->add({std::move(node), points.surface, edge, tracked.fate == ScanFate::kNewPiece});
+  worker_->add({std::move(node), points.surface, edge, tracked.fate == ScanFate::kNewPiece, points.by_radar});
   T_track_nodes_.push_back(tracked.T_track_robot);
 }
 

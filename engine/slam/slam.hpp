@@ -67,8 +67,9 @@ class Slam {
   void add_odometry(const Odometry& odometry);
   /// Fails only for what check(scan) refuses; the trajectory then keeps its length.
   Result<ScanOutcome> add_scan(const LaserScan& scan);
-  /// The same for a radar turn. When lidar scans come too, the sweep shows which of their echoes are smoke, and its own
-  /// points join the next scan, the more the thicker the smoke is.
+  /// The same for a radar turn. While lidar scans come too, the sweep shows which of their echoes are smoke, and its
+  /// own points join the next scan, the more the thicker the smoke is. Before the first scan, and two seconds after the
+  /// last, the radar carries the robot alone; each sensor is matched by its own parameters.
   Result<ScanOutcome> add_sweep(const RadarSweep& sweep);
 
   /// Takes over the newest node poses and loops. Without a background, searches and solves for the nodes not worked off

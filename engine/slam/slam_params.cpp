@@ -74,6 +74,7 @@ Result<Ok> LoopParams::validate() const {
 Result<Ok> GraphParams::validate() const {
   return ParamCheck("GraphParams")
       .positive("loop_kernel", loop_kernel)
+      .in_range("agrees_within", agrees_within, 0, loop_kernel)
       .positive("pair_reach_m", pair_reach_m)
       .in_range("pairs_per_node", pairs_per_node, 0, 200)
       .in_range("least_pair_score", least_pair_score, 0, 1)
@@ -92,6 +93,7 @@ Result<Ok> RadarParams::validate() const {
       .positive("surface_radius_m", surface_radius_m)
       .positive("spacing_m", spacing_m)
       .in_range("behind_share", behind_share, 0, 1)
+      .positive("lasting_within_m", lasting_within_m)
       .in_range("cell_m", cell_m, 0.02, 2)
       .in_range("good_score", good_score, 0, 1)
       .in_range("least_score", least_score, 0, good_score)

@@ -75,8 +75,9 @@ struct LoopParams {
 
 /// Solving and polishing the graph.
 struct GraphParams {
-  double loop_kernel = 3.0;   ///< Cauchy width, in standard deviations
-  double pair_reach_m = 8.0;  ///< nodes farther apart are not matched with each other
+  double loop_kernel = 3.0;    ///< Cauchy width, in standard deviations
+  double agrees_within = 1.0;  ///< sigmas: a loop this near to the graph as it is does not make it be solved at once
+  double pair_reach_m = 8.0;   ///< nodes farther apart are not matched with each other
   int pairs_per_node = 10;
   double least_pair_score = 0.40;
   double pair_information = 0.10;  ///< share of the information of a pair's points that is independent
@@ -95,6 +96,7 @@ struct RadarParams {
   double spacing_m = 0.25;
   double behind_share =
       0.5;  ///< an echo behind n others of its azimuth has the weight this^n: mirror images are behind
+  double lasting_within_m = 0.30;  ///< echoes are drawn this near to what was seen from another place
   AlignParams align{.iterations = 15,
                     .gate_m = 0.60,
                     .last_gate_m = 0.25,

@@ -22,6 +22,7 @@ struct ScanPoints {
   std::vector<SurfacePoint> surface;                           ///< for matching: thinned, at most params.most_points
   std::shared_ptr<const std::vector<Point2>> hits_robot;       ///< for drawing
   std::shared_ptr<const std::vector<Point2>> free_ends_robot;  ///< ends of beams known free
+  bool by_radar = false;                                       ///< by the radar alone: matched as RadarParams say
 };
 
 /// The robot's motion during a scan, constant: what is used to straighten it.

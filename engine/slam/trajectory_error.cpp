@@ -9,9 +9,12 @@ namespace {
 
 constexpr double kSameStamp_s = 1e-4;    ///< an estimate this near to a log record is that record's
 constexpr double kRecordStamp_s = 0.02;  ///< a relation's stamp this near to a record means that record
+constexpr double kStampStep_s = 0.011;   ///< records this near to a stamp may all be meant: stamps in steps of 10 ms
+constexpr double kOnePlace_m = 0.03, kOnePlace_rad = 0.02;
 
 ErrorSpread spread_of(std::vector<double> errors) {
   ErrorSpread spread;
+  if (errors.empty()) return spread;
   const auto count = static_cast<double>(errors.size());
   spread.mean = std::accumulate(errors.begin(), errors.end(), 0.0) / count;
   double squares = 0;
@@ -65,6 +68,20 @@ class PoseLookup {
     const Record& record = records_[nearest_in_time(records_, stamp)];
     if (apart_s(record.stamp, stamp) < kRecordStamp_s) return moved_by_odometry(record.index);
     return gap_s <= longest_gap_s_ ? std::optional(nearest.T_map_robot) : std::nullopt;
+  }
+
+  /// Whether all readings that the stamp may mean were taken at one place.
+  bool is_clear(Stamp stamp) const {
+    const Stamp step = from_seconds(kStampStep_s);
+    auto record = std::lower_bound(records_.begin(), records_.end(), stamp - step,
+                                   [](const Record& r, Stamp t) { return r.stamp < t; });
+    if (record == records_.end() || record->stamp > stamp + step) return false;
+    const Pose2 T_first_odom = odometry_[record->index].T_odom_robot.inverse();
+    for (; record != records_.end() && record->stamp <= stamp + step; ++record) {
+      const Pose2 moved = T_first_odom * odometry_[record->index].T_odom_robot;
+      if (moved.translation().norm() > kOnePlace_m || std::abs(moved.heading()) > kOnePlace_rad) return false;
+    }
+    return true;
   }
 
  private:
@@ -132,7 +149,7 @@ Result<RelationError> relation_error(const Trajectory& estimate, const std::vect
   if (estimate.empty()) return fail(Errc::kDegenerate, "no estimated pose");
   const PoseLookup lookup(estimate, odometry, longest_gap_s);
   RelationError result;
-  std::vector<double> translation, rotation;
+  std::vector<double> translation, rotation, clear_translation, clear_rotation;
   for (const PoseRelation& relation : relations) {
     const auto from = lookup.at(relation.from), to = lookup.at(relation.to);
     if (!from || !to) {
@@ -142,11 +159,17 @@ Result<RelationError> relation_error(const Trajectory& estimate, const std::vect
     const Pose2 error = relation.T_from_to.inverse() * (from->inverse() * *to);
     translation.push_back(error.translation().norm());
     rotation.push_back(std::abs(error.heading()));
+    if (!lookup.is_clear(relation.from) || !lookup.is_clear(relation.to)) continue;
+    clear_translation.push_back(translation.back());
+    clear_rotation.push_back(rotation.back());
   }
   if (translation.empty()) return fail(Errc::kDegenerate, "no relation has poses at both of its stamps");
   result.relations = translation.size();
   result.translation_m = spread_of(translation);
   result.rotation_rad = spread_of(rotation);
+  result.clear = clear_translation.size();
+  result.clear_translation_m = spread_of(clear_translation);
+  result.clear_rotation_rad = spread_of(clear_rotation);
   return result;
 }
 

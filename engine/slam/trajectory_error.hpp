@@ -22,7 +22,12 @@ struct ErrorSpread {
 struct RelationError {
   ErrorSpread translation_m, rotation_rad;
   std::size_t relations = 0;
-  std::size_t missing = 0;  ///< no pose near one of the stamps
+  std::size_t missing = 0;  ///< no pose near one of the stamps; not in the means
+  /// The same over relations both of whose stamps mean one place only. Logs stamped in coarse steps, or in bursts after
+  /// a pause, hold several readings at nearly one stamp that lie up to half a metre apart: which of them a relation
+  /// means cannot be told, and even the true trajectory is then judged wrong. Without odometry nobody knows: 0 of them.
+  ErrorSpread clear_translation_m, clear_rotation_rad;
+  std::size_t clear = 0;
 };
 
 /// Errors of an estimated trajectory, order by order of stamps.

@@ -1,226 +1,56 @@
-// radar_lidar_bench [--seeds N] [--trace]: both sensors through the simulated twin of Paper VI's experiments (three
-// runs of a truck in a hall, no odometry), and through a burning building.
+// radar_lidar_bench [--seeds N]: both sensors through the simulated twin of Paper VI's experiments (three runs of a
+// truck in a hall, no odometry), and through a burning building.
 //
 // Printed a run and sensor: the paper's displacement measure (difference of step lengths, turn wrapped by a full
 // circle), the relation error of the same steps, and the error of the whole trajectory. Then, a seed a line: ATE in a
 // random building full of smoke with the radar alone, and in the burning one with lidar, radar and both.
-#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
-#include <string>
-#include <variant>
 
-#include "core/random.hpp"
-#include "simulation/recorded_run.hpp"
-#include "slam/slam.hpp"
-#include "slam/trajectory_error.hpp"
+#include "tests/bench/radar_figures.hpp"
 
-namespace smokemap {
+namespace smokemap::bench {
 namespace {
 
-constexpr double kLidarTurn_s = 0.10085, kRadarTurn_s = 0.4021;  // measured from the paper's files
-
-void add_box(std::vector<WorldSegment>& world, const Point2& low, const Point2& high, Material material) {
-  const Point2 c[4] = {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
-  for (int i = 0; i < 4; ++i) world.push_back({{c[i], c[(i + 1) % 4]}, material});
-}
-
-/// A hall of a laboratory: 16 m x 11 m, pillars, a plasterboard office in a corner, metal cabinets, a window front.
-std::vector<WorldSegment> hall() {
-  std::vector<WorldSegment> world;
-  const Point2 c[4] = {{0, 0}, {16, 0}, {16, 11}, {0, 11}};
-  for (int i = 0; i < 4; ++i) world.push_back({{c[i], c[(i + 1) % 4]}, i == 1 ? Material::kGlass : Material::kBrick});
-  world.push_back({{{12, 11}, {12, 8}}, Material::kWood});
-  world.push_back({{{12, 8}, {14.8, 8}}, Material::kWood});
-  add_box(world, {0.6, 4}, {1.2, 7}, Material::kMetal);
-  add_box(world, {5, 9.8}, {9, 10.6}, Material::kMetal);
-  add_box(world, {10.5, 0.5}, {13, 1.3}, Material::kWood);
-  add_box(world, {7.7, 5.2}, {8.1, 5.6}, Material::kBrick);
-  add_box(world, {13.4, 4.4}, {13.8, 4.8}, Material::kBrick);
-  add_box(world, {3, 0.4}, {4.2, 1.4}, Material::kMetal);
-  return world;
-}
-
-/// Where the truck is: straight legs at 0.1 m/s, turns on the spot at 15 degrees a second.
-class Truck {
- public:
-  explicit Truck(const std::vector<Point2>& way) {
-    double t = 2, heading = std::atan2(way[1].y() - way[0].y(), way[1].x() - way[0].x());
-    keys_.push_back({0, {way[0], heading}});
-    keys_.push_back({t, {way[0], heading}});
-    for (std::size_t i = 1; i < way.size(); ++i) {
-      const Point2 leg = way[i] - way[i - 1];
-      const double next = std::atan2(leg.y(), leg.x());
-      t += std::abs(wrap_angle(next - heading)) / 0.26 + 1e-6;
-      keys_.push_back({t, {way[i - 1], next}});
-      heading = next;
-      t += leg.norm() / 0.1;
-      keys_.push_back({t, {way[i], heading}});
-    }
-  }
-  double duration_s() const { return keys_.back().first; }
-  Pose2 at(double t) const {
-    for (std::size_t i = 1; i < keys_.size(); ++i)
-      if (t <= keys_[i].first)
-        return interpolate(keys_[i - 1].second, keys_[i].second,
-                           (t - keys_[i - 1].first) / (keys_[i].first - keys_[i - 1].first));
-    return keys_.back().second;
-  }
-
- private:
-  std::vector<std::pair<double, Pose2>> keys_;
-};
-
-struct Twin {
-  std::vector<LaserScan> scans;
-  std::vector<RadarSweep> sweeps;
-  Trajectory truth;
-};
-
-/// The hall with people walking to and fro in it.
-SegmentWorld hall_at(double t, int people) {
-  std::vector<WorldSegment> world = hall();
-  for (int k = 0; k < people; ++k) {
-    const Point2 p(5 + 3 * k + 2.5 * std::sin(0.11 * t + k), 7.8 - 5.5 * k + 0.5 * std::cos(0.17 * t));
-    add_box(world, p - Point2(0.2, 0.15), p + Point2(0.2, 0.15), Material::kWood);
-  }
-  return SegmentWorld(world);
-}
-
-Twin drive(const std::vector<Point2>& way, int people, std::uint64_t seed) {
-  const Truck truck(way);
-  std::mt19937_64 random(seed);
-  LidarParams lidar;
-  lidar.range_max_m = 30;
-  lidar.sigma_range_m = 0.03;
-  lidar.turn_s = kLidarTurn_s;
-  RadarSimParams radar;
-  radar.turn_s = kRadarTurn_s;
-  Twin twin;
-  SegmentWorld world = hall_at(0, people);
-  for (double t = 0; t + kLidarTurn_s < truck.duration_s(); t += kLidarTurn_s) {
-    if (people > 0) world = hall_at(t, people);
-    twin.scans.push_back(
-        simulate_scan(world, {}, truck.at(t), truck.at(t + kLidarTurn_s), from_seconds(t), lidar, random).scan);
-    twin.truth.push_back({from_seconds(t), truck.at(t), Eigen::Matrix3d::Zero()});
-  }
-  for (double t = 0; t + kRadarTurn_s < truck.duration_s(); t += kRadarTurn_s) {
-    if (people > 0) world = hall_at(t, people);
-    twin.sweeps.push_back(
-        simulate_sweep(world, truck.at(t), truck.at(t + kRadarTurn_s), from_seconds(t), radar, random));
-  }
-  return twin;
-}
-
-/// Every `stride`-th pose: the paper's nodes come every 1.1 s (lidar) or 1.2 s (radar).
-Trajectory nodes_of(const Trajectory& poses, std::size_t stride) {
-  Trajectory nodes;
-  for (std::size_t i = 0; i < poses.size(); i += stride) nodes.push_back(poses[i]);
-  return nodes;
-}
-
-std::vector<PoseRelation> steps_of(const Trajectory& nodes, const Truck& truck) {
-  std::vector<PoseRelation> steps;
-  for (std::size_t i = 1; i < nodes.size(); ++i)
-    steps.push_back({nodes[i - 1].stamp, nodes[i].stamp,
-                     truck.at(to_seconds(nodes[i - 1].stamp)).inverse() * truck.at(to_seconds(nodes[i].stamp))});
-  return steps;
-}
-
-void report(const char* run, const char* sensor, const Slam& slam, const Twin& twin, const Truck& truck,
-            std::size_t stride) {
-  const Trajectory nodes = nodes_of(slam.trajectory(), stride);
-  const auto whole = absolute_error(slam.trajectory(), twin.truth, Point2::Zero(), 0.5);
-  const auto paper = displacement_error(nodes, twin.truth);
-  const auto step = relation_error(nodes, steps_of(nodes, truck));
-  if (!whole || !paper || !step) return;
-  std::printf("%-10s %-6s %8.4f %8.4f %10.4f %8.3f %9.4f %6lld/%lld\n", run, sensor, paper->length_m.mean,
-              paper->heading_rad.mean, step->translation_m.mean, degrees(step->rotation_rad.mean), whole->rmse_m,
-              static_cast<long long>(slam.counters().loops_closed), static_cast<long long>(slam.counters().lost));
-  std::fflush(stdout);
-}
-
-void paper_twin() {
+void twin() {
   std::printf("%-10s %-6s %8s %8s %10s %8s %9s %s\n", "run", "sensor", "paper m", "rad", "step m", "deg", "ATE m",
               "loops/lost");
-  const std::vector<Point2> round{{3, 3}, {10.5, 3}, {10.5, 7}, {5.5, 7}, {3, 4.2}, {3, 3.2}};
-  const std::vector<Point2> other{{11, 4}, {11, 7}, {4, 7}, {4, 3.5}, {9, 3.5}, {10.8, 4}};
-  std::vector<Point2> twice = round;
-  twice.insert(twice.end(), round.begin() + 1, round.end());
-  const std::vector<std::vector<Point2>> ways{round, other, twice};
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    const std::string name = i == 2 ? "3 (people)" : std::to_string(i + 1);
-    const Twin twin = drive(ways[i], i == 2 ? 2 : 0, 10 + i);
-    const Truck truck(ways[i]);
-    Slam lidar, radar;
-    for (const LaserScan& scan : twin.scans) (void)lidar.add_scan(scan).ok();
-    lidar.polish();
-    report(name.c_str(), "lidar", lidar, twin, truck, 11);
-    for (const RadarSweep& sweep : twin.sweeps) (void)radar.add_sweep(sweep).ok();
-    radar.polish();
-    report(name.c_str(), "radar", radar, twin, truck, 3);
-  }
+  for (const TwinFigures& f : paper_twin())
+    std::printf("%-10s %-6s %8.4f %8.4f %10.4f %8.3f %9.4f %6lld/%lld\n", f.run.c_str(),
+                f.sensor == Use::kLidar ? "lidar" : "radar", f.paper.length_m.mean, f.paper.heading_rad.mean,
+                f.step.translation_m.mean, degrees(f.step.rotation_rad.mean), f.whole.rmse_m,
+                static_cast<long long>(f.counters.loops_closed), static_cast<long long>(f.counters.lost));
 }
 
-enum class Use { kLidar, kRadar, kBoth };
-
-/// ATE and loops of one run; the truth is that of the scans.
-std::string judged(const RecordedRun& run, Use use) {
-  Slam slam;
-  for (const auto& item : run.items) {
-    if (const auto* odometry = std::get_if<Odometry>(&item)) slam.add_odometry(*odometry);
-    const auto* scan = std::get_if<LaserScan>(&item);
-    if (scan && use != Use::kRadar) (void)slam.add_scan(*scan).ok();
-    const auto* sweep = std::get_if<RadarSweep>(&item);
-    if (sweep && use != Use::kLidar) (void)slam.add_sweep(*sweep).ok();
-  }
-  slam.polish();
-  const auto error = absolute_error(slam.trajectory(), run.truth);
-  char text[64];
-  std::snprintf(text, sizeof text, "%8.3f %8.3f %5lld", error ? error->rmse_m : -1, error ? error->most_m : -1,
-                static_cast<long long>(slam.counters().loops_closed));
-  return text;
-}
-
-/// Through a few rooms and back to where the run began, so that there is a loop to close.
-RunParams there_and_back(const DemoScenario& demo) {
-  RunParams params;
-  const Point2 start = demo.T_world_start.translation();
-  const std::vector<Point2> tour = room_tour(demo.building, start);
-  for (std::size_t i = 0; i < tour.size() && i < 6; ++i) params.waypoints.push_back(tour[i]);
-  params.waypoints.push_back(start + demo.T_world_start.rotation() * Point2(0.5, 0));
-  params.max_duration_s = 400;
-  return params;
+void print(const RunFigures& f) {
+  std::printf(" %8.3f %8.3f %5lld", f.whole.rmse_m, f.whole.most_m, static_cast<long long>(f.counters.loops_closed));
+  std::fflush(stdout);
 }
 
 void buildings(int seeds) {
   std::printf("\n%-5s %-23s | %-23s %-23s %-23s\n%-5s %8s %8s %5s   (the same for the others)\n", "seed",
               "dense smoke: radar", "fire: lidar", "radar", "both", "", "ATE m", "max m", "loops");
   for (int seed = 1; seed <= seeds; ++seed) {
-    DemoParams params;
-    params.fire = false;  // the radar does not see it
-    const auto clear = make_demo(static_cast<std::uint64_t>(seed), params);
+    const auto clear = building_run(seed, false);
     if (!clear) continue;
-    const auto run = record_run(*clear, there_and_back(*clear));
-    if (!run) continue;
-    std::printf("%-5d %s |", seed, judged(*run, Use::kRadar).c_str());
-    std::fflush(stdout);
-    const auto burning = make_demo(static_cast<std::uint64_t>(seed));
-    const auto in_fire = burning ? record_run(*burning, there_and_back(*burning)) : run;
-    if (seed <= 5 && in_fire)
-      for (const Use use : {Use::kLidar, Use::kRadar, Use::kBoth}) std::printf(" %s", judged(*in_fire, use).c_str());
+    std::printf("%-5d", seed);
+    print(judged(*clear, Use::kRadar));
+    if (const auto burning = seed <= 5 ? building_run(seed, true) : std::nullopt) {
+      std::printf(" |");
+      for (const Use use : {Use::kLidar, Use::kRadar, Use::kBoth}) print(judged(*burning, use));
+    }
     std::printf("\n");
-    std::fflush(stdout);
   }
 }
 
 }  // namespace
-}  // namespace smokemap
+}  // namespace smokemap::bench
 
 int main(int argc, char** argv) {
   int seeds = 20;
   for (int i = 1; i + 1 < argc; ++i)
     if (std::strcmp(argv[i], "--seeds") == 0) seeds = std::atoi(argv[i + 1]);
-  smokemap::paper_twin();
-  smokemap::buildings(seeds);
+  smokemap::bench::twin();
+  smokemap::bench::buildings(seeds);
 }

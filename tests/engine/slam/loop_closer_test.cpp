@@ -37,8 +37,7 @@ std::pair<PoseGraph, NodeScans> bent_way(int count, double sigma_m, double sigma
       graph.edges.push_back(step_between(i - 1, i, z, sigma_m, sigma_rad));
     }
     graph.nodes.push_back(node);
-    scans.way_m.push_back(i);
-    scans.surface.emplace_back();
+    scans.add({}, i, false);
   }
   return {graph, scans};
 }

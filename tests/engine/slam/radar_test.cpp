@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "slam/radar_points.hpp"
 #include "slam/slam.hpp"
@@ -178,6 +179,100 @@ TEST(RadarEchoes, CountLessTheMoreStandsBeforeThem) {
   EXPECT_EQ(echoes[1].weight, echoes[0].weight);
   EXPECT_NEAR(echoes[2].weight, 0.5 * echoes[0].weight, 1e-9);
   EXPECT_NEAR(echoes[3].weight, 0.25 * echoes[0].weight, 1e-9);
+}
+
+/// One round; `sees(i)` says which sensors work at pose i: first the lidar, second the radar.
+struct SensorRound {
+  std::vector<Pose2> way = test::rounds(1, 0.25);
+  Slam slam;
+  Trajectory truth;
+
+  explicit SensorRound(const std::function<std::pair<bool, bool>(std::size_t)>& sees) {
+    std::mt19937_64 random(8);
+    const auto walls = test::ring_of_corridors();
+    test::Wheels wheels(0.98, 0.004, 0.05, 8);
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      const double seconds = 0.5 * static_cast<double>(i);
+      slam.add_odometry(wheels.read(way[i], seconds));
+      const auto [lidar, radar] = sees(i);
+      if (radar) (void)slam.add_sweep(sweep_at(walls, way[i], seconds, random)).ok();
+      if (lidar) (void)slam.add_scan(test::scan_at(walls, way[i], seconds, random)).ok();
+      truth.push_back({from_seconds(seconds), way[i], Eigen::Matrix3d::Zero()});
+    }
+    slam.polish();
+  }
+  double ate_m(std::size_t from, std::size_t to) const {
+    Trajectory part;
+    for (const StampedPose& pose : slam.trajectory())
+      if (pose.stamp >= truth[from].stamp && pose.stamp < truth[to].stamp) part.push_back(pose);
+    const auto error = absolute_error(part, truth);
+    return error ? error->rmse_m : 1e9;
+  }
+};
+
+/// What the newest steps between nodes claim to know.
+double information_of_last_steps(const PoseGraph& graph) {
+  double sum = 0;
+  const std::size_t steps = graph.nodes.size() - 1;
+  for (std::size_t e = steps - 15; e < steps; ++e) sum += graph.edges[e].sqrt_information.topLeftCorner<2, 2>().norm();
+  return sum / 15;
+}
+
+/// A robot whose first item was a sweep kept the radar's wide gates and large sigmas for ever.
+TEST(RadarSlam, ALidarThatComesLaterIsMatchedAsALidar) {
+  const SensorRound late([](std::size_t i) { return std::pair(i >= 40, true); });
+  const SensorRound lidar([](std::size_t) { return std::pair(true, false); });
+  const SensorRound radar([](std::size_t) { return std::pair(false, true); });
+  const std::size_t end = late.way.size() - 1;
+  EXPECT_EQ(late.slam.counters().lost, 0);
+  EXPECT_LT(late.ate_m(50, end), 0.015);
+  EXPECT_LT(late.ate_m(0, end), 0.05);  // in one piece with what the radar made before
+  const double as_lidar = information_of_last_steps(lidar.slam.graph());
+  EXPECT_GT(information_of_last_steps(late.slam.graph()), 0.8 * as_lidar);
+  EXPECT_LT(information_of_last_steps(radar.slam.graph()), 0.6 * as_lidar);
+}
+
+TEST(RadarSlam, CarriesOnAloneWhenTheLidarFallsSilent) {
+  const SensorRound run([](std::size_t i) { return std::pair(i < 40 || i > 110, true); });
+  EXPECT_EQ(run.slam.counters().lost, 0);
+  const std::size_t end = run.way.size() - 1;
+  EXPECT_LT(run.ate_m(0, end), 0.10);
+  EXPECT_GT(run.slam.trajectory().size(), run.way.size() - 8);  // only the first two seconds are waited for
+}
+
+TEST(RadarGhosts, ThatMoveWithTheRobotAreNotDrawn) {
+  std::mt19937_64 random(9);
+  const auto walls = test::ring_of_corridors();
+  test::Wheels wheels(0.98, 0.004, 0.05, 9);
+  const std::vector<Pose2> way = test::rounds(1, 0.35);
+  Slam slam;
+  int ghosts_seen = 0;
+  const auto off_wall = [&](const Point2& p_world) {
+    return std::none_of(walls.begin(), walls.end(),
+                        [&](const Segment2& wall) { return distance(wall, p_world) < 0.35; });
+  };
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    RadarSweep sweep = sweep_at(walls, way[i], 0.5 * static_cast<double>(i), random);
+    // A wall met flat shows another one instead, through it: a patch of azimuths at a range that changes.
+    const std::size_t from = uniform_index(random, 190), bin = 120 + uniform_index(random, 150);
+    for (std::size_t a = from; a < from + 10; ++a) {
+      std::fill_n(sweep.power.begin() + static_cast<std::ptrdiff_t>(a * 320), 320, 1.0F);
+      sweep.power[a * 320 + bin] = 200.0F;
+    }
+    const ScanPoints points = surface_points(sweep, {}, {}, {});
+    for (const Point2& p : *points.hits_robot) ghosts_seen += off_wall(way[i] * p);
+    slam.add_odometry(wheels.read(way[i], 0.5 * static_cast<double>(i)));
+    ASSERT_TRUE(slam.add_sweep(sweep));
+  }
+  int drawn = 0, ghosts_drawn = 0;
+  for (const PoseNode& node : slam.graph().nodes)
+    for (const Point2& p : *node.hits_robot) {
+      ++drawn;
+      ghosts_drawn += off_wall(way.front() * (node.T_map_robot * p));
+    }
+  ASSERT_GT(ghosts_seen, 300);
+  EXPECT_LT(ghosts_drawn, 0.25 * ghosts_seen);
+  EXPECT_GT(drawn, 100 * static_cast<int>(slam.graph().nodes.size()));  // of at most 200 a turn: walls stay
 }
 
 TEST(RadarSweeps, ThatMakeNoSenseAreRefused) {

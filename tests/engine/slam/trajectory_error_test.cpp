@@ -76,6 +76,34 @@ TEST(RelationError, FillsStampsBetweenScansByOdometry) {
   EXPECT_GT(without->missing, 50u);
 }
 
+/// Bursts: after a pause, five readings of a moving robot within 4 ms. The relations' own stamps are as they should be.
+TEST(RelationError, ToldApartIsWhatStampsOfABurstCannotSay) {
+  const Trajectory truth = winding(300, 9);
+  std::vector<Odometry> odometry;
+  Trajectory stamped = truth;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (i % 20 >= 15)
+      stamped[i].stamp = truth[i / 20 * 20 + 19].stamp + from_seconds(0.001 * static_cast<double>(i % 5));
+    odometry.push_back({stamped[i].stamp, "robot", truth[i].T_map_robot, 0, 0});
+  }
+  std::vector<PoseRelation> relations;
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    const bool burst = i % 20 == 17;  // the people's stamp names another reading of the burst, 0.6 m away
+    relations.push_back({stamped[i - 1].stamp, stamped[burst ? i + 2 : i].stamp,
+                         truth[i - 1].T_map_robot.inverse() * truth[i].T_map_robot});
+  }
+  const auto error = relation_error(stamped, relations, odometry);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->relations, relations.size());
+  EXPECT_GT(error->translation_m.most, 0.5);         // though the trajectory is the truth itself
+  EXPECT_LT(error->clear_translation_m.most, 1e-9);  // and this shows it
+  EXPECT_GT(error->clear, 180u);
+  EXPECT_LT(error->clear, 240u);
+  const auto unknown = relation_error(stamped, relations);
+  ASSERT_TRUE(unknown);
+  EXPECT_EQ(unknown->clear, 0u);
+}
+
 TEST(RelationError, NeedsSomethingToCompare) {
   EXPECT_THAT(relation_error({}, {}), Fails(Errc::kDegenerate));
   EXPECT_THAT(relation_error(winding(5, 7), {{from_seconds(1e6), from_seconds(2e6), {}}}), Fails(Errc::kDegenerate));

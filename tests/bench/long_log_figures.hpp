@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "maps/laser_scan.hpp"
+#include "slam/trajectory_error.hpp"
+
+namespace smokemap::bench {
+
+/// A drive of a kilometre and more, as the logs of universities are: a grid of corridors around blocks of rooms
+/// (about 65 m x 50 m), a scanner that looks forward over half a turn (180 beams, 1 cm noise), wheels that slip.
+struct LongLog {
+  std::vector<std::variant<LaserScan, Odometry>> items;
+  Trajectory truth;  ///< one entry a scan
+  /// What people would verify: steps of about a metre, and every place seen again.
+  std::vector<PoseRelation> relations;
+  std::vector<PoseRelation> revisits;  ///< those of them that close a loop
+  double way_m = 0;
+};
+
+/// Walks at random through the corridors, into a room now and then, until `way_m` are driven. The same seed gives the
+/// same log.
+LongLog long_log(std::uint64_t seed, double way_m);
+
+}  // namespace smokemap::bench
