@@ -7,8 +7,8 @@
 namespace smokemap {
 namespace {
 
-constexpr double kRoomShare = 0.13;  ///< error of a point well inside a matched room, as a share of its diagonal
-constexpr double kPinShare = 0.03;   ///< error right at a pin
+constexpr double kRoomShare = 0.15;  ///< error of a point well inside a matched room, as a share of its diagonal
+constexpr double kPinShare = 0.06;   ///< error right at a pin
 constexpr double kPullReach = 0.45;  ///< how far a handle pulls, in roots of the area
 
 }  // namespace

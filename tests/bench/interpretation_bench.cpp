@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "segmentation/constriction.hpp"
@@ -29,6 +30,8 @@ Result<Segmentation> segment_for_matching(const cv::Mat& free_space) {
 
 void print_methods(const std::vector<bench::JudgedPair>& pairs, bool every) {
   bench::print_matching_figures(pairs, kTaps, {}, every);
+  std::printf("  tapped where matching asks\n");
+  bench::print_matching_figures(pairs, {1, 2}, {}, false, bench::Taps::kAsked);
   for (const auto& [name, method] : {std::pair("ursim", MatchMethod::kUrsim), {"voronoi", MatchMethod::kVoronoi}}) {
     std::printf("  as published: %s\n", name);
     MatchParams published;

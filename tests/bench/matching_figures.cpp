@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <numeric>
+#include <optional>
 #include <set>
 
 #include "core/random.hpp"
@@ -95,6 +97,38 @@ std::vector<size_t> farthest_groups(const std::vector<JudgedGroup>& groups, int 
     usable.erase(best);
   }
   return chosen;
+}
+
+/// The group that a person would tap when asked for a region: one with a click in it, else the nearest.
+std::optional<size_t> asked_group(const JudgedPair& pair, int label, const std::vector<size_t>& tapped) {
+  std::optional<size_t> nearest;
+  double least = 1e18;
+  for (size_t g = 0; g < pair.groups.size(); ++g) {
+    const JudgedGroup& group = pair.groups[g];
+    const bool is_tapped = std::find(tapped.begin(), tapped.end(), g) != tapped.end();
+    if (is_tapped || group.clicks_a.empty() || group.clicks_b.empty()) continue;
+    const Point2 p = group.clicks_a.front();
+    const double distance = label_near(pair.a.labels, p) == label
+                                ? 0
+                                : (p - pair.a.regions[static_cast<size_t>(label - 1)].anchor_px).squaredNorm();
+    if (distance < least) least = distance, nearest = g;
+  }
+  return nearest;
+}
+
+std::vector<size_t> choose_taps(const JudgedPair& pair, int taps, const Matcher& matcher, Taps choice) {
+  if (choice == Taps::kFarApart) return farthest_groups(pair.groups, taps);
+  std::vector<size_t> tapped;
+  std::vector<Pin> pins;
+  while (static_cast<int>(tapped.size()) < taps) {
+    const auto matching = matcher.solve(pins, {});
+    if (!matching || !matching->next_pin_label_a) break;
+    const auto group = asked_group(pair, *matching->next_pin_label_a, tapped);
+    if (!group) break;
+    tapped.push_back(*group);
+    pins.push_back({pair.groups[*group].clicks_a.front(), pair.groups[*group].clicks_b.front()});
+  }
+  return tapped;
 }
 
 /// The published rule: a pair is true if one group has a click in both of its regions.
@@ -225,7 +259,11 @@ void print_reliability(const std::vector<std::pair<double, bool>>& said) {
       if (confidence >= low && confidence < high) all += 1, right += is_right;
     std::printf("  %.1f-%.1f %d/%d=%.2f", low, std::min(1.0, high), right, all, all ? double(right) / all : 0.0);
   }
-  std::printf("\n");
+  double ordered = 0, compared = 0;  // of a right and a wrong pair, the right one is said to be surer
+  for (const auto& [sure, is_right] : said)
+    for (const auto& [other, other_right] : said)
+      if (is_right && !other_right) compared += 1, ordered += sure > other ? 1 : sure == other ? 0.5 : 0;
+  std::printf("; right ones surer than wrong ones %.2f\n", compared > 0 ? ordered / compared : 1.0);
 }
 
 /// Sums over pairs of one set and annotator.
@@ -249,6 +287,13 @@ struct FigureSums {
   }
 };
 
+void print_whole_time(const std::vector<double>& ms) {
+  const double sum = std::accumulate(ms.begin(), ms.end(), 0.0);
+  std::printf("    a pair with the regions of both maps: %.0f ms (max %.0f)\n",
+              sum / static_cast<double>(std::max<size_t>(1, ms.size())),
+              ms.empty() ? 0 : *std::max_element(ms.begin(), ms.end()));
+}
+
 void print_pair(const JudgedPair& pair, const PairFigures& one) {
   std::printf("    %s/%s %s  F1 %.2f hit %.2f untapped %.2f error %.2f %4.0f ms %s\n", pair.set.c_str(),
               pair.name.c_str(), pair.annotator.c_str(), one.points_f1, one.room_hit, one.untapped_hit,
@@ -257,17 +302,17 @@ void print_pair(const JudgedPair& pair, const PairFigures& one) {
 
 }  // namespace
 
-PairFigures judge(const JudgedPair& pair, int taps, const MatchParams& params) {
+PairFigures judge(const JudgedPair& pair, int taps, const MatchParams& params, Taps choice) {
   PairFigures figures;
-  const std::vector<size_t> tapped = farthest_groups(pair.groups, taps);
-  std::vector<Pin> pins;
-  for (const size_t g : tapped) pins.push_back({pair.groups[g].clicks_a.front(), pair.groups[g].clicks_b.front()});
   std::clock_t begin = std::clock();
   auto matcher = Matcher::create(pair.a, pair.b, params);
   if (!matcher) {
     figures.doubtful = true;
     return figures;
   }
+  const std::vector<size_t> tapped = choose_taps(pair, taps, *matcher, choice);
+  std::vector<Pin> pins;
+  for (const size_t g : tapped) pins.push_back({pair.groups[g].clicks_a.front(), pair.groups[g].clicks_b.front()});
   if (!pins.empty()) {  // the answer before the last tap was there already
     (void)matcher->solve({pins.begin(), pins.end() - 1}, {});
     begin = std::clock();
@@ -301,7 +346,7 @@ Result<std::vector<JudgedPair>> read_judged_sets(const std::string& folder, cons
 }
 
 void print_matching_figures(const std::vector<JudgedPair>& pairs, const std::vector<int>& taps,
-                            const MatchParams& params, bool every_pair) {
+                            const MatchParams& params, bool every_pair, Taps choice) {
   std::set<std::pair<std::string, std::string>> rows;
   for (const JudgedPair& pair : pairs) rows.emplace(pair.set, pair.annotator);
   std::printf("%-9s %-9s %4s %4s %9s %8s %8s %8s %6s   %-14s %8s %5s %5s %5s\n", "set", "truth", "taps", "n",
@@ -309,19 +354,22 @@ void print_matching_figures(const std::vector<JudgedPair>& pairs, const std::vec
               "max");
   for (const int count : taps) {
     std::vector<std::pair<double, bool>> said;
+    std::vector<double> whole_ms;
     int low = 0, low_unflagged = 0, flagged = 0;
     for (const auto& [set, annotator] : rows) {
       FigureSums sums;
       for (const JudgedPair& pair : pairs) {
         if (pair.set != set || pair.annotator != annotator) continue;
-        const PairFigures one = judge(pair, count, params);
+        const PairFigures one = judge(pair, count, params, choice);
         sums.add(one);
+        whole_ms.push_back(pair.segment_ms + one.match_ms);
         flagged += one.doubtful, low += one.room_hit < 0.2, low_unflagged += one.room_hit < 0.2 && !one.doubtful;
         said.insert(said.end(), one.said.begin(), one.said.end());
         if (every_pair) print_pair(pair, one);
       }
       sums.print(set, annotator, count);
     }
+    if (count == 0) print_whole_time(whole_ms);
     std::printf("    room_hit < 0.2: %d of %zu, not flagged %d; flagged %d\n", low, pairs.size(), low_unflagged,
                 flagged);
     print_reliability(said);

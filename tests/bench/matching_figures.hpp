@@ -24,15 +24,20 @@ struct PairFigures {
   std::vector<double> returns;                ///< distance after there and back, share of the room's diagonal
 };
 
-/// @param taps  rooms that a person taps first: the first click of each of the groups that lie farthest apart
-PairFigures judge(const JudgedPair& pair, int taps, const MatchParams& params);
+enum class Taps {
+  kFarApart,  ///< the first click of each of the groups that lie farthest apart
+  kAsked      ///< of the group at the region that matching asks for, one after the other
+};
+
+/// @param taps  rooms that a person taps first
+PairFigures judge(const JudgedPair& pair, int taps, const MatchParams& params, Taps choice = Taps::kFarApart);
 
 /// Figures of an answer made elsewhere.
 PairFigures judge_answer(const JudgedPair& pair, const Matching& matching, const std::vector<Pin>& pins);
 
 /// The table of the matching part, one line a set, annotator and number of taps, with the reliability table below.
 void print_matching_figures(const std::vector<JudgedPair>& pairs, const std::vector<int>& taps,
-                            const MatchParams& params, bool every_pair);
+                            const MatchParams& params, bool every_pair, Taps choice = Taps::kFarApart);
 
 /// All sets below a folder that are there (KTH, E5_on_08, E5_on_10); one error if one cannot be read.
 Result<std::vector<JudgedPair>> read_judged_sets(const std::string& folder, const Segmenter& segmenter);
