@@ -21,6 +21,7 @@ struct LayoutArguments {
   std::string output;
   std::string preview;
   std::vector<double> corners;
+  std::vector<double> plan_at;
   double metres_per_pixel = 0;
   int page = 1;
 };
@@ -57,14 +58,16 @@ void run_layout(const LayoutArguments& arguments, Outcome& outcome) {
     options.sheet_corners_px = corners;
   }
   if (arguments.metres_per_pixel != 0) options.metres_per_pixel = arguments.metres_per_pixel;
+  if (!arguments.plan_at.empty()) options.plan_at_px = Point2(arguments.plan_at[0], arguments.plan_at[1]);
   const auto bytes = read_file(arguments.picture, PictureLimits{}.max_bytes);
   if (!bytes) return outcome.no_answer(bytes.error());
   PictureLimits limits;
   limits.decode_seconds = 30;  // a busy machine is no reason to refuse a file that somebody named on the command line
   const auto picture = decode_picture(*bytes, limits, arguments.page - 1);
   if (!picture) return outcome.no_answer(picture.error());
-  const auto reading = read_layout(*picture, options);
+  auto reading = read_layout(*picture, options);
   if (!reading) return outcome.no_answer(reading.error());
+  for (auto& warning : picture_warnings(*bytes)) reading->layout.warnings.push_back(std::move(warning));
   if (const auto written = write_file(arguments.output, document(*reading) + "\n"); !written)
     return outcome.no_answer(written.error());
   if (arguments.preview.empty()) return;
@@ -86,6 +89,11 @@ void add_layout(CLI::App& app, Outcome& outcome) {
                    "sheet corners in the picture, clockwise from top left: x1,y1,...,x4,y4")
       ->delimiter(',')
       ->expected(8);
+  command
+      ->add_option("--plan-at", arguments->plan_at,
+                   "of several drawings on the sheet the one at x,y (rectified picture)")
+      ->delimiter(',')
+      ->expected(2);
   command->add_option("--metres-per-pixel", arguments->metres_per_pixel, "of the rectified picture, if it is known");
   command->add_option("--page", arguments->page, "page of a PDF, from 1")->check(CLI::Range(1, 10000));
   command->callback([arguments, &outcome] { run_layout(*arguments, outcome); });

@@ -42,7 +42,9 @@ Result<server::CleanPicture> PictureReader::clean(std::string_view bytes, int pd
   if (!photograph) return photograph.error();
   const auto picture = decode_picture(bytes_of(bytes), {}, pdf_page - 1);
   if (!picture) return picture.error();
-  return encoded(*picture, *photograph);
+  auto clean = encoded(*picture, *photograph);
+  if (clean) clean->warnings = picture_warnings(bytes_of(bytes));
+  return clean;
 }
 
 Result<server::PlanReading> PictureReader::read_layout(std::string_view bytes, const server::PlanReadRequest& request) {
@@ -50,7 +52,11 @@ Result<server::PlanReading> PictureReader::read_layout(std::string_view bytes, c
   if (!photograph) return photograph.error();
   const auto picture = decode_picture(bytes_of(bytes));
   if (!picture) return picture.error();
-  auto reading = smokemap::read_layout(*picture, {request.corners_px, request.metres_per_pixel, true});
+  LayoutOptions options;
+  options.sheet_corners_px = request.corners_px;
+  options.metres_per_pixel = request.metres_per_pixel;
+  options.plan_at_px = request.plan_at_px;
+  auto reading = smokemap::read_layout(*picture, options);
   if (!reading) return reading.error();
   auto rectified = encoded(reading->rectified, *photograph);
   if (!rectified) return rectified.error();

@@ -263,7 +263,7 @@ std::vector<Segment2> find_edges(const cv::Mat& darkness) {
 
 }  // namespace
 
-double usual_black(const cv::Mat& darkness) {
+double usual_black(const cv::Mat& darkness, double share) {
   std::array<int, 256> histogram{};
   for (int y = 0; y < darkness.rows; ++y)
     for (int x = 0; x < darkness.cols; ++x) ++histogram[darkness.at<uchar>(y, x)];
@@ -274,7 +274,7 @@ double usual_black(const cv::Mat& darkness) {
   };
   const double ink = above(110);
   int black = 255;
-  while (black > 110 && above(black) < 0.25 * ink) --black;
+  while (black > 110 && above(black) < share * ink) --black;
   return ink > 0 ? black : 255;
 }
 

@@ -25,7 +25,7 @@ cv::Mat ink_mask(const cv::Mat& darkness, const LayoutParams& params);
 
 /// How dark this picture's ink is, 0..255, where blur has not thinned it: the upper quartile of all that is clearly
 /// dark; 255 without ink.
-double usual_black(const cv::Mat& darkness);
+double usual_black(const cv::Mat& darkness, double share = 0.25);
 
 /// Finds straight pieces of ink: edges (line segment detector, in strips so that memory stays small), for each the
 /// width of the ink behind it, then the centre line is followed along the ink as far as it goes. Longest first; every

@@ -9,12 +9,9 @@
 
 namespace smokemap {
 
-/// Share of the segment that lies on the mask (CV_8UC1, not zero = on it).
-double covered_share(const Segment2& s, const cv::Mat& mask);
-
 /// Looks ahead from every loose end of a wall: to a loose end that faces it, or to a wall across its way. What lies
-/// between becomes a wall of low confidence where a sign hides it, otherwise a window (thin lines run along it), a door
-/// (a leaf stands at its side) or a passage.
+/// between becomes a wall of low confidence where a sign hides it (see repair_hidden), otherwise a window (thin lines
+/// run along it), a door (a leaf stands at its side) or a passage.
 /// @param covered  CV_8UC1, 255 where signs hide the drawing; same pixels as the map
 void close_gaps(LayoutMap& map, const std::vector<InkStroke>& thin, const cv::Mat& covered, double thickness_px,
                 const LayoutParams& params);

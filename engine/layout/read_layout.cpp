@@ -8,9 +8,12 @@
 
 #include "grids/paper_view.hpp"
 #include "layout/clutter.hpp"
+#include "layout/confidence.hpp"
+#include "layout/gaps.hpp"
 #include "layout/ink_stroke.hpp"
 #include "layout/openings.hpp"
 #include "layout/rooms.hpp"
+#include "layout/scale.hpp"
 #include "layout/sheet.hpp"
 #include "layout/signs.hpp"
 #include "layout/wall_graph.hpp"
@@ -19,6 +22,10 @@
 namespace smokemap {
 namespace {
 
+constexpr double kAsGoodAsThePlan = 0.25;  ///< a drawing with so much of the best one's score deserves a question
+
+constexpr double kTrusted = 0.935;  ///< of well read plans the mean confidence is higher
+
 /// From pixels of the working picture to pixels of the layout.
 void rescale(LayoutMap& map, double scale) {
   const auto back = [&](const Point2& p) { return Point2((p + Point2(0.5, 0.5)) / scale - Point2(0.5, 0.5)); };
@@ -26,40 +33,66 @@ void rescale(LayoutMap& map, double scale) {
   for (auto& w : map.walls) w.thickness_px /= scale;
   for (auto& o : map.openings) o.gap_px = {back(o.gap_px.a), back(o.gap_px.b)};
   for (auto& s : map.signs) s.p_px = back(s.p_px), s.radius_px /= scale;
+  for (auto& d : map.drawings) d.low_px = back(d.low_px), d.high_px = back(d.high_px);
   if (map.you_are_here_px) map.you_are_here_px = back(*map.you_are_here_px);
 }
 
-/// A median door is about as wide as doors are. Needs three doors.
-std::optional<LayoutScale> scale_from_doors(const LayoutMap& map, const LayoutParams& params) {
+std::vector<double> door_widths(const LayoutMap& map) {
   std::vector<double> widths;
   for (const auto& o : map.openings)
     if (o.kind == OpeningKind::kDoor) widths.push_back(o.gap_px.length());
-  if (widths.size() < 3) return std::nullopt;
-  std::sort(widths.begin(), widths.end());
-  return LayoutScale{params.door_width_m / widths[widths.size() / 2], params.door_width_sigma, false};
+  return widths;
 }
 
-void add_warnings(LayoutMap& map, const WallStrokes& strokes, double extent_px) {
-  if (strokes.regions > 1)
-    map.warnings.push_back("The sheet shows " + std::to_string(strokes.regions) +
-                           " drawings that could be the plan; the one with most walls was read.");
+/// Mean confidence of the walls by length.
+double mean_confidence(const LayoutMap& map) {
+  double sum = 0, all = 0;
+  for (std::size_t w = 0; w < map.walls.size(); ++w) {
+    const double length = map.wall_px(static_cast<int>(w)).length();
+    sum += length * map.walls[w].confidence, all += length;
+  }
+  return all > 0 ? sum / all : 0;
+}
+
+void add_warnings(LayoutMap& map, bool bar) {
+  const auto alike = std::count_if(map.drawings.begin(), map.drawings.end(),
+                                   [](const LayoutDrawing& d) { return d.score > kAsGoodAsThePlan || d.chosen; });
+  if (alike > 1)
+    map.warnings.push_back("The sheet shows " + std::to_string(alike) +
+                           " drawings that could be the plan: choose the floor.");
   if (map.walls.size() < 8) map.warnings.push_back("Few walls were found: check the plan against the picture.");
+  if (mean_confidence(map) < kTrusted)
+    map.warnings.push_back(
+        "Much of what was read is doubtful: the drawing is crowded or hard to see. Check every wall.");
   if (map.rooms_px.empty()) map.warnings.push_back("No closed room was found: walls may be missing.");
-  if (extent_px < 500) map.warnings.push_back("The plan is small in the picture: thin walls may be missing.");
+  Point2 low = map.corners.front().p_px, high = low;
+  for (const auto& c : map.corners) low = low.cwiseMin(c.p_px), high = high.cwiseMax(c.p_px);
+  if ((high - low).maxCoeff() < 500)
+    map.warnings.push_back("The plan is small in the picture: thin walls may be missing.");
   if (!map.scale)
     map.warnings.push_back("The scale is not known: measure one length.");
   else if (!map.scale->by_person)
-    map.warnings.push_back("The scale is guessed from doors: measure one length.");
+    map.warnings.push_back(std::string("The scale is guessed from ") + (bar ? "a scale bar" : "doors or paper size") +
+                           " to " + std::to_string(std::lround(100 * map.scale->relative_sigma)) +
+                           " percent: measure one length.");
 }
 
-/// Darkness without what has a colour, without signs and without text: routes, headers and pictograms are no ink.
-cv::Mat legible_ink(const PaperView& view, const cv::Mat& covered, const LayoutParams& params) {
-  cv::Mat ink, text;
-  cv::subtract(view.darkness, view.chroma, ink);  // saturates at zero
-  ink.setTo(0, covered);
-  cv::dilate(find_text(ink_mask(ink, params)), text, cv::Mat());
-  ink.setTo(0, text);
-  return ink;
+/// What is left to be read as lines.
+struct Legible {
+  cv::Mat darkness;  ///< without what has a colour, without signs and text: routes, headers and pictograms are no ink
+  std::optional<double> bar_division_px;  ///< of a scale bar
+};
+
+Legible legible_ink(const PaperView& view, const cv::Mat& covered, const LayoutParams& params) {
+  Legible out;
+  cv::subtract(view.darkness, view.chroma, out.darkness);  // saturates at zero
+  out.darkness.setTo(0, covered);
+  const cv::Mat ink = ink_mask(out.darkness, params);
+  out.bar_division_px = find_scale_bar(ink);
+  cv::Mat text;
+  cv::dilate(find_text(ink), text, cv::Mat());
+  out.darkness.setTo(0, text);
+  return out;
 }
 
 struct Choice {
@@ -69,7 +102,7 @@ struct Choice {
 
 /// Without the outlines of filled figures, which show only against the walls' thickness.
 Choice without_blocks(const std::vector<InkStroke>& strokes, const cv::Mat& darkness, Choice first, double least_px,
-                      const LayoutParams& params) {
+                      const LayoutParams& params, const std::optional<Point2>& at) {
   const cv::Mat solid = darkness >= params.solid_share * usual_black(darkness);
   const cv::Mat blocks = find_blocks(solid, std::max(first.walls.thickness_px, first.walls.thickest_px));
   std::vector<InkStroke> free;
@@ -78,66 +111,94 @@ Choice without_blocks(const std::vector<InkStroke>& strokes, const cv::Mat& dark
   if (free.size() == strokes.size()) return first;
   cv::Mat covered;
   cv::bitwise_or(first.covered, blocks, covered);
-  return {select_walls(free, darkness.size(), params, least_px), covered};
+  return {select_walls(free, darkness.size(), params, least_px, at), covered};
 }
 
 /// Walls in the ink. Where a plan draws them as two lines, the space between is filled and everything is traced once
 /// more: then thickness tells walls from leaves and treads, as in plans with solid walls, and blur does no harm.
+/// @param at  the drawing at this place, if a person chose one
 Choice choose_walls(const cv::Mat& darkness, const cv::Mat& covered, const LayoutParams& params,
-                    const Progress& progress) {
+                    const std::optional<Point2>& at, const Progress& progress) {
   const auto strokes = trace_strokes(darkness, params);
   progress.tell(0.7, "rooms");
-  Choice choice{select_walls(strokes, darkness.size(), params), covered};
+  Choice choice{select_walls(strokes, darkness.size(), params, 0, at), covered};
   if (choice.walls.walls.empty() || progress.cancelled()) return choice;
-  if (!choice.walls.hollow) return without_blocks(strokes, darkness, std::move(choice), 0, params);
+  if (!choice.walls.hollow) return without_blocks(strokes, darkness, std::move(choice), 0, params, at);
   const int reach = static_cast<int>(std::lround(1.1 * choice.walls.hollow_px)) | 1;
   const double least_px = 1.6 * choice.walls.outline_px;
   cv::Mat filled;
   cv::morphologyEx(darkness, filled, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_RECT, {reach, reach}));
   const auto solid = trace_strokes(filled, params);
-  Choice second{select_walls(solid, filled.size(), params, least_px), covered};
+  Choice second{select_walls(solid, filled.size(), params, least_px, at), covered};
   if (second.walls.walls.empty()) return choice;
-  second = without_blocks(solid, filled, std::move(second), least_px, params);
+  second = without_blocks(solid, filled, std::move(second), least_px, params, at);
   second.walls.hollow = true;
   return second;
 }
 
-Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& options, const LayoutParams& params,
-                                   const Progress& progress) {
+Result<Ok> check_request(const cv::Mat& picture, const LayoutOptions& options, const LayoutParams& params) {
   if (const auto valid = params.validate(); !valid) return valid.error();
   if (options.metres_per_pixel && !(*options.metres_per_pixel > 0 && std::isfinite(*options.metres_per_pixel)))
     return fail(Errc::kInvalidArgument, "metres per pixel must be positive");
+  if (options.plan_at_px && !options.plan_at_px->allFinite())
+    return fail(Errc::kInvalidArgument, "the place of the plan is not a number");
   const double megapixels = static_cast<double>(picture.rows) * picture.cols * 1e-6;
   if (megapixels > params.max_megapixels)
     return fail(Errc::kTooLarge, "the picture has " + std::to_string(static_cast<int>(megapixels)) +
                                      " megapixels, at most " + std::to_string(static_cast<int>(params.max_megapixels)) +
                                      " are read");
-  const auto bgr = as_bgr(picture);
-  if (!bgr) return bgr.error();
+  return Ok{};
+}
 
+/// The sheet straightened out, or where it is proposed to be.
+Result<LayoutReading> find_sheet(const cv::Mat& bgr, const LayoutOptions& options, const LayoutParams& params) {
   LayoutReading reading;
-  reading.rectified = *bgr;
-  progress.tell(0.05, "sheet");
-  if (options.sheet_corners_px) {
-    reading.sheet_corners_px = *options.sheet_corners_px;
-    reading.sheet_confidence = 1;
-    auto sheet = rectify_sheet(*bgr, *options.sheet_corners_px, params.max_megapixels);
-    if (!sheet) return sheet.error();
-    if (options.rectify) reading.rectified = sheet->bgr, reading.homography = sheet->homography;
-  } else {
-    const auto proposal = propose_sheet(*bgr);
+  reading.rectified = bgr;
+  if (!options.sheet_corners_px) {
+    const auto proposal = propose_sheet(bgr);
     reading.sheet_corners_px = proposal.corners_px;
     reading.sheet_confidence = proposal.confidence;
+    return reading;
   }
+  reading.sheet_corners_px = *options.sheet_corners_px;
+  reading.sheet_confidence = 1;
+  auto sheet = rectify_sheet(bgr, *options.sheet_corners_px, params.max_megapixels);
+  if (!sheet) return sheet.error();
+  if (options.rectify) reading.rectified = sheet->bgr, reading.homography = sheet->homography;
+  return reading;
+}
+
+/// Long side in pixels of the layout of an A-series sheet, if that is what is seen.
+std::optional<double> sheet_side(const LayoutReading& reading) {
+  if (const auto whole = a_series_side(reading.rectified.size())) return whole;
+  if (reading.sheet_confidence < 0.5) return std::nullopt;
+  const auto side = [&](std::size_t a, std::size_t b) {
+    return (reading.sheet_corners_px[a] - reading.sheet_corners_px[b]).norm();
+  };
+  const double width = 0.5 * (side(0, 1) + side(3, 2)), height = 0.5 * (side(0, 3) + side(1, 2));
+  return a_series_side({static_cast<int>(width), static_cast<int>(height)});
+}
+
+Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& options, const LayoutParams& params,
+                                   const Progress& progress) {
+  if (const auto fine = check_request(picture, options, params); !fine) return fine.error();
+  const auto bgr = as_bgr(picture);
+  if (!bgr) return bgr.error();
+  progress.tell(0.05, "sheet");
+  auto found = find_sheet(*bgr, options, params);
+  if (!found) return found.error();
+  LayoutReading reading = std::move(*found);
 
   const WorkPicture work = at_work_size(reading.rectified, params.min_long_side_px, params.work_long_side_px);
+  std::optional<Point2> at;
+  if (options.plan_at_px) at = work.scale * (*options.plan_at_px + Point2(0.5, 0.5)) - Point2(0.5, 0.5);
   progress.tell(0.15, "light");
   const PaperView view = divide_light(work.bgr, params.background_share);
   const Signs signs = find_signs(view, params);
   if (progress.cancelled()) return fail(Errc::kCancelled, "reading the plan was cancelled");
   progress.tell(0.35, "walls");
-  const cv::Mat darkness = legible_ink(view, signs.covered, params);
-  const Choice choice = choose_walls(darkness, signs.covered, params, progress);
+  const Legible legible = legible_ink(view, signs.covered, params);
+  const Choice choice = choose_walls(legible.darkness, signs.covered, params, at, progress);
   const WallStrokes& chosen = choice.walls;
   if (progress.cancelled()) return fail(Errc::kCancelled, "reading the plan was cancelled");
   progress.tell(0.85, "rooms");
@@ -147,19 +208,19 @@ Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& 
   map = build_wall_graph(chosen.walls, chosen.thickness_px, params);
   if (map.walls.empty()) return fail(Errc::kDegenerate, "no walls were found in the picture");
   close_gaps(map, chosen.thin, choice.covered, chosen.thickness_px, params);
+  grade_confidence(map);
+  map.drawings = chosen.drawings;
   map.signs = signs.signs;
   map.you_are_here_px = signs.you_are_here_px;
   rescale(map, work.scale);
   map.width_px = reading.rectified.cols;
   map.height_px = reading.rectified.rows;
   map.rooms_px = find_rooms(map);
-  if (options.metres_per_pixel)
-    map.scale = LayoutScale{*options.metres_per_pixel, 0.02, true};
-  else
-    map.scale = scale_from_doors(map, params);
-  Point2 low = map.corners.front().p_px, high = low;
-  for (const auto& c : map.corners) low = low.cwiseMin(c.p_px), high = high.cwiseMax(c.p_px);
-  add_warnings(map, chosen, (high - low).maxCoeff());
+  ScaleEvidence evidence{door_widths(map), legible.bar_division_px, sheet_side(reading)};
+  if (evidence.bar_division_px) *evidence.bar_division_px /= work.scale;
+  map.scale =
+      options.metres_per_pixel ? LayoutScale{*options.metres_per_pixel, 0.02, true} : guess_scale(evidence, params);
+  add_warnings(map, evidence.bar_division_px.has_value());
   progress.tell(1, "done");
   return reading;
 }

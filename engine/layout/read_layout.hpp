@@ -17,6 +17,7 @@ struct LayoutOptions {
   /// sheet.
   std::optional<std::array<Point2, 4>> sheet_corners_px;
   std::optional<double> metres_per_pixel;  ///< of layout_px, measured by a person
+  std::optional<Point2> plan_at_px;        ///< layout_px: of several drawings on the sheet the one at this place
   bool rectify = true;                     ///< false: the corners only say where the sheet is, nothing is warped
 };
 

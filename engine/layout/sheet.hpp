@@ -2,9 +2,12 @@
 
 #include <array>
 #include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
 
 #include "core/result.hpp"
 #include "geometry/pose2.hpp"
+#include "geometry/segment2.hpp"
 #include "maps/layout_map.hpp"
 
 namespace smokemap {
@@ -16,8 +19,19 @@ struct SheetProposal {
   double confidence = 0;  ///< 0..1; 0 = nothing stood out and the whole picture is proposed
 };
 
-/// The sheet of paper in a photograph: the bright quadrilateral that fills a good part of it.
+/// The sheet of paper in a photograph: the quadrilateral that fills a good part of it and differs from what lies around
+/// it, found at a small size and refined at full size. Where no rim is in sight, a rectangle of the sheet around the
+/// drawing, from the vanishing points of its lines, at less confidence.
 SheetProposal propose_sheet(const cv::Mat& bgr);
+
+/// Every side moved to where paper begins, by at most 1.6 % of the sheet's long side; a side without a clear rim stays.
+/// @param bgr  CV_8UC3
+SheetCorners refine_sheet(const cv::Mat& bgr, const SheetCorners& corners_px);
+
+/// From straight lines in a picture: the rectangle of the sheet that bounds them. Nothing when one of two families of
+/// lines (rows, columns; each within 35 degrees of its axis) does not meet in one point, or when both are parallel: a
+/// picture taken straight on needs no corners.
+std::optional<SheetProposal> propose_by_vanishing_points(const std::vector<Segment2>& lines_px, cv::Size size);
 
 /// The picture seen straight on. Sides get their mean length in the photograph; a sheet within a tenth of the A series'
 /// ratio is made to have it. kInvalidArgument unless the corners are finite, convex, clockwise and span at least 16 px.

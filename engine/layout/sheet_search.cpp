@@ -53,7 +53,8 @@ std::vector<SideLine> joined_lines(std::vector<Segment2> pieces) {
   return lines;
 }
 
-std::vector<SideLine> long_lines(const cv::Mat& small) {
+/// Straight edges of any channel.
+std::vector<Segment2> straight_pieces(const cv::Mat& small) {
   const double side = std::max(small.rows, small.cols);
   const auto detector = cv::createLineSegmentDetector(cv::LSD_REFINE_STD);
   std::vector<Segment2> pieces;
@@ -65,6 +66,10 @@ std::vector<SideLine> long_lines(const cv::Mat& small) {
     for (const auto& l : found)
       if (const Segment2 s{Point2(l[0], l[1]), Point2(l[2], l[3])}; s.length() > 0.03 * side) pieces.push_back(s);
   }
+  return pieces;
+}
+
+std::vector<SideLine> long_lines(std::vector<Segment2> pieces, double side) {
   auto lines = joined_lines(std::move(pieces));
   std::erase_if(lines, [&](const SideLine& line) { return line.seen.length() < 0.15 * side; });
   std::stable_sort(lines.begin(), lines.end(),
@@ -83,9 +88,9 @@ class SheetSearch {
     double weakest_side = 0;
   };
 
-  std::optional<Found> best() const {
+  std::optional<Found> best(const std::vector<Segment2>& pieces) const {
     std::vector<SideLine> rows, columns;
-    for (const SideLine& line : long_lines(small_)) {
+    for (const SideLine& line : long_lines(pieces, side_)) {
       auto& family = line_angle_between(line.seen.heading(), 0) < radians(45) ? rows : columns;
       if (family.size() < kMostSides) family.push_back(line);
     }
@@ -162,8 +167,12 @@ class SheetSearch {
   bool inside(const Point2& p) const {
     return p.x() >= 0 && p.y() >= 0 && p.x() <= small_.cols - 1 && p.y() <= small_.rows - 1;
   }
+  /// The nearest pixel of the picture: a side may lie outside it.
   cv::Vec3i at(const Point2& p) const {
-    return small_.at<cv::Vec3b>(static_cast<int>(std::lround(p.y())), static_cast<int>(std::lround(p.x())));
+    const auto within = [](double value, int size) {
+      return std::clamp(static_cast<int>(std::lround(value)), 0, size - 1);
+    };
+    return small_.at<cv::Vec3b>(within(p.y(), small_.rows), within(p.x(), small_.cols));
   }
   static int largest(const cv::Vec3i& d) { return std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])}); }
 
@@ -211,7 +220,7 @@ class SheetSearch {
     for (int i = 0; i < kSideSamples; ++i) {
       const Point2 p = edge.a + (0.05 + 0.9 * (i + 0.5) / kSideSamples) * (edge.b - edge.a);
       const std::array<Point2, 2> beyond{Point2(p - 2 * step_ * n), Point2(p - 5 * step_ * n)};  // past a thick wall
-      if (!inside(beyond[1])) continue;
+      if (!inside(beyond[0]) || !inside(beyond[1])) continue;
       int behind = 0;
       bool alike = false;
       for (const double depth : {14.0, 24.0, 34.0})  // a header may come first
@@ -244,14 +253,20 @@ SheetProposal propose_sheet(const cv::Mat& bgr) {
   cv::Mat small;
   cv::resize(bgr, small, {}, 1 / shrink, 1 / shrink, cv::INTER_AREA);
   cv::GaussianBlur(small, small, {3, 3}, 0.8);
-  const auto found = SheetSearch(small).best();
-  if (!found || found->weakest_side <= 0.3) return proposal;
   const double shrink_x = static_cast<double>(bgr.cols) / small.cols,
                shrink_y = static_cast<double>(bgr.rows) / small.rows;
-  for (std::size_t i = 0; i < 4; ++i)
-    proposal.corners_px[i] = {(found->corners[i].x() + 0.5) * shrink_x - 0.5,
-                              (found->corners[i].y() + 0.5) * shrink_y - 0.5};
-  proposal.confidence = std::clamp((found->weakest_side - 0.3) / 0.6, 0.0, 1.0);
+  const auto enlarge = [&](SheetCorners corners) {
+    for (auto& p : corners) p = {(p.x() + 0.5) * shrink_x - 0.5, (p.y() + 0.5) * shrink_y - 0.5};
+    return corners;
+  };
+  const auto pieces = straight_pieces(small);
+  const auto found = SheetSearch(small).best(pieces);
+  if (found && found->weakest_side > 0.3) {
+    proposal.corners_px = refine_sheet(bgr, enlarge(found->corners));
+    proposal.confidence = std::clamp((found->weakest_side - 0.3) / 0.6, 0.0, 1.0);
+  } else if (const auto vanishing = propose_by_vanishing_points(pieces, small.size())) {
+    proposal = {enlarge(vanishing->corners_px), vanishing->confidence};
+  }
   return proposal;
 }
 

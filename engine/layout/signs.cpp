@@ -5,6 +5,8 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "layout/ink_stroke.hpp"
+
 namespace smokemap {
 namespace {
 
@@ -48,6 +50,7 @@ std::array<cv::Mat, 4> colour_masks(const PaperView& view, double min_chroma) {
 
 struct Figure {
   cv::Rect box;
+  std::vector<cv::Point> outline;
   double filled = 0;  ///< share of its box inside its outline
   double inked = 0;   ///< share of its box that has the colour
 };
@@ -69,11 +72,34 @@ std::vector<Figure> figures_in(const cv::Mat& mask, double low_px, double high_p
     if (small < low_px || large > high_px || large > 2.6 * small) continue;
     Figure f;
     f.box = box;
+    f.outline = outline;
     f.filled = cv::contourArea(outline) / box.area();
     f.inked = static_cast<double>(cv::countNonZero(mask(box))) / box.area();
     if (f.filled >= 0.5 && f.inked >= 0.35) figures.push_back(f);
   }
   return figures;
+}
+
+constexpr double kColourless = 3e-4;                 ///< share of coloured pixels in a gray copy: specks of noise
+constexpr double kGreyLow = 0.25, kGreyHigh = 0.82;  ///< of the darkness of ink: signs on a copy without colours
+
+/// On a copy without colours signs are gray figures, lighter than walls and darker than tints. What class they were of
+/// nobody can tell by the colour.
+void add_grey_signs(const PaperView& view, Signs& out) {
+  const double side = std::max(view.chroma.rows, view.chroma.cols), black = usual_black(view.darkness, 0.06);
+  cv::Mat band;
+  cv::inRange(view.darkness, cv::Scalar(kGreyLow * black), cv::Scalar(kGreyHigh * black), band);
+  for (const auto& f : figures_in(band, std::max(4.0, 0.006 * side), 0.05 * side)) {
+    const Point2 middle(f.box.x + 0.5 * (f.box.width - 1), f.box.y + 0.5 * (f.box.height - 1));
+    std::vector<cv::Point> hull;
+    cv::convexHull(f.outline, hull);
+    const std::vector<std::vector<cv::Point>> rim{hull};
+    const int margin = std::max(3, static_cast<int>(0.16 * std::max(f.box.width, f.box.height)));
+    cv::fillConvexPoly(out.covered, hull, cv::Scalar(255));
+    cv::polylines(out.covered, rim, true, cv::Scalar(255), margin);
+    out.signs.push_back(
+        {middle, 0.25 * (f.box.width + f.box.height), "grey", std::clamp(0.7 * f.filled * f.inked + 0.2, 0.0, 1.0)});
+  }
 }
 
 }  // namespace
@@ -84,6 +110,9 @@ Signs find_signs(const PaperView& view, const LayoutParams& params) {
   out.covered = cv::Mat::zeros(view.chroma.size(), CV_8UC1);
   const auto masks = colour_masks(view, params.colour_chroma);
   double roundest = 0;
+  double coloured = 0;
+  for (const auto& mask : masks) coloured += cv::countNonZero(mask);
+  if (coloured < kColourless * static_cast<double>(view.chroma.total())) add_grey_signs(view, out);
   for (std::size_t c = 0; c < masks.size(); ++c) {
     for (const auto& f : figures_in(masks[c], std::max(4.0, 0.006 * side), 0.05 * side)) {
       const Point2 middle(f.box.x + 0.5 * (f.box.width - 1), f.box.y + 0.5 * (f.box.height - 1));

@@ -18,7 +18,8 @@ struct Signs {
 };
 
 /// Coloured figures of sign size (half to four percent of the long side), by class of colour. Routes, headers and
-/// tinted rooms are too large or too pale.
+/// tinted rooms are too large or too pale. In a picture without any colour (a gray copy) gray figures of that size, as
+/// "grey".
 Signs find_signs(const PaperView& view, const LayoutParams& params);
 
 }  // namespace smokemap

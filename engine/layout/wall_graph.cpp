@@ -7,7 +7,8 @@
 namespace smokemap {
 namespace {
 
-constexpr double kCrossingAngle = 0.3;  // rad: flatter crossings are continuations
+constexpr double kCrossingAngle = 0.3;                // rad: flatter crossings are continuations
+constexpr double kLeastBend = 0.07, kMostBend = 0.6;  // rad: between chords of one curved wall
 
 /// A stroke whose ends may have moved, with the places where others meet it.
 struct GraphStroke {
@@ -56,6 +57,54 @@ Point2 snapped_end(const std::vector<InkStroke>& strokes, std::size_t self, bool
   return target;
 }
 
+/// One end of a stroke where the wall bends.
+struct Bend {
+  std::size_t stroke = 0;
+  bool at_b = false;
+};
+
+/// A curved wall comes as a chain of chords that overlap or nearly touch: neighbours are cut, or carried on, to where
+/// they cross. Chords of a gentle bend only; sharper turns are corners.
+std::vector<InkStroke> joined_at_bends(std::vector<InkStroke> strokes) {
+  struct Joint {
+    Bend one, two;
+    Point2 p = Point2::Zero();
+    double moved_px = 0;
+  };
+  std::vector<Joint> joints;
+  const auto end_near = [&](std::size_t i, const Point2& p) {
+    return Bend{i, (strokes[i].axis.b - p).squaredNorm() < (strokes[i].axis.a - p).squaredNorm()};
+  };
+  const auto end_of = [&](const Bend& b) { return b.at_b ? strokes[b.stroke].axis.b : strokes[b.stroke].axis.a; };
+  const auto may_move = [&](const Bend& b, const Point2& p) {
+    const auto& s = strokes[b.stroke];
+    const Point2 outward = b.at_b ? s.axis.direction() : Point2(-s.axis.direction());
+    const double ahead = (p - end_of(b)).dot(outward);
+    return s.length() > 2.5 * s.thickness_px && ahead < 1.5 * s.thickness_px + 2 && -ahead < 0.45 * s.length();
+  };
+  for (std::size_t i = 0; i < strokes.size(); ++i)
+    for (std::size_t j = i + 1; j < strokes.size(); ++j) {
+      const double turn = line_angle_between(strokes[i].axis.heading(), strokes[j].axis.heading());
+      if (turn < kLeastBend || turn > kMostBend) continue;
+      const auto p = line_intersection(strokes[i].axis, strokes[j].axis);
+      if (!p) continue;
+      const Bend one = end_near(i, *p), two = end_near(j, *p);
+      if (!may_move(one, *p) || !may_move(two, *p)) continue;
+      joints.push_back({one, two, *p, (end_of(one) - *p).norm() + (end_of(two) - *p).norm()});
+    }
+  std::stable_sort(joints.begin(), joints.end(),
+                   [](const Joint& a, const Joint& b) { return a.moved_px < b.moved_px; });
+  std::set<std::pair<std::size_t, bool>> used;
+  for (const auto& joint : joints) {
+    if (used.count({joint.one.stroke, joint.one.at_b}) || used.count({joint.two.stroke, joint.two.at_b})) continue;
+    for (const Bend& b : {joint.one, joint.two}) {
+      used.insert({b.stroke, b.at_b});
+      (b.at_b ? strokes[b.stroke].axis.b : strokes[b.stroke].axis.a) = joint.p;
+    }
+  }
+  return strokes;
+}
+
 void cut_where_others_meet(std::vector<GraphStroke>& strokes) {
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     auto& s = strokes[i];
@@ -99,7 +148,8 @@ class CornerSet {
 
 }  // namespace
 
-LayoutMap build_wall_graph(const std::vector<InkStroke>& walls, double thickness_px, const LayoutParams& params) {
+LayoutMap build_wall_graph(const std::vector<InkStroke>& chosen, double thickness_px, const LayoutParams& params) {
+  const auto walls = joined_at_bends(chosen);
   const double snap_px = std::max(3.0, params.snap_walls * 0.5 * thickness_px);
   std::vector<GraphStroke> strokes;
   for (std::size_t i = 0; i < walls.size(); ++i) {

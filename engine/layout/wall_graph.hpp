@@ -9,9 +9,9 @@
 namespace smokemap {
 
 /// Strokes -> corners and walls: ends that stop short of a wall, or overshoot it, meet its centre line; ends that
-/// nearly touch in line are joined; walls are cut where others meet or cross them. Directions are never changed by more
-/// than the snap. Fills corners and walls only, in the strokes' pixels. The order of strokes does not matter beyond
-/// rounding.
-LayoutMap build_wall_graph(const std::vector<InkStroke>& walls, double thickness_px, const LayoutParams& params);
+/// nearly touch in line, or in a gentle bend, are joined; walls are cut where others meet or cross them. Directions are
+/// never changed by more than the snap. Fills corners and walls only, in the strokes' pixels. The order of strokes does
+/// not matter beyond rounding.
+LayoutMap build_wall_graph(const std::vector<InkStroke>& chosen, double thickness_px, const LayoutParams& params);
 
 }  // namespace smokemap

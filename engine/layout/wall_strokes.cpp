@@ -4,72 +4,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "layout/drawings.hpp"
+
 namespace smokemap {
 namespace {
 
 constexpr double kHollowShare = 0.3;  ///< of the long lines in pairs: from here on single lines are no walls
 constexpr double kClosed = 1.5;       ///< times an outline's thickness: solid, or two lines that blur made one
-
-double gap_between(const Segment2& one, const Segment2& two) {
-  if (intersection(one, two)) return 0;
-  return std::min({distance(one, two.a), distance(one, two.b), distance(two, one.a), distance(two, one.b)});
-}
-
-class Groups {
- public:
-  explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
-  std::size_t of(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) { parent_[std::max(of(a), of(b))] = std::min(of(a), of(b)); }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
-struct Region {
-  std::vector<std::size_t> members;
-  double length = 0;
-  int junctions = 0;
-  Point2 low = Point2::Constant(1e300), high = Point2::Constant(-1e300);
-  /// Letters and words have many short strokes in a small space, frames are large and empty.
-  double score() const { return members.empty() ? 0 : std::max(0, junctions - 3) * length * (high - low).norm(); }
-};
-
-/// Strokes that touch, or continue each other within `bridge_px`, hang together.
-std::vector<Region> connected_regions(const std::vector<InkStroke>& strokes, double bridge_px, double side_px) {
-  Groups groups(strokes.size());
-  std::vector<int> junctions(strokes.size(), 0);
-  for (std::size_t i = 0; i < strokes.size(); ++i)
-    for (std::size_t j = i + 1; j < strokes.size(); ++j) {
-      const auto &one = strokes[i], &two = strokes[j];
-      const double touch = 0.5 * (one.thickness_px + two.thickness_px) + 3;
-      const double reach = 0.5 * (one.length() + two.length()) + std::max(bridge_px, touch);
-      if ((one.axis.midpoint() - two.axis.midpoint()).squaredNorm() > reach * reach) continue;
-      const double gap = gap_between(one.axis, two.axis);
-      const double turn = line_angle_between(one.axis.heading(), two.axis.heading());
-      if (gap <= touch && turn > radians(20) && std::min(one.length(), two.length()) > 0.015 * side_px)
-        junctions[i] += 1;
-      const bool continues = turn < radians(5) && std::abs(signed_line_distance(one.axis, two.axis.midpoint())) < touch;
-      if (gap <= touch || (continues && gap <= bridge_px)) groups.join(i, j);
-    }
-  std::vector<Region> by_root(strokes.size());
-  for (std::size_t i = 0; i < strokes.size(); ++i) {
-    auto& region = by_root[groups.of(i)];
-    region.members.push_back(i);
-    if (strokes[i].length() > 0.015 * side_px) region.length += strokes[i].length();
-    region.junctions += junctions[i];
-    for (const Point2& end : {strokes[i].axis.a, strokes[i].axis.b})
-      region.low = region.low.cwiseMin(end), region.high = region.high.cwiseMax(end);
-  }
-  std::vector<Region> regions;
-  for (auto& region : by_root)
-    if (!region.members.empty()) regions.push_back(std::move(region));
-  std::stable_sort(regions.begin(), regions.end(),
-                   [](const Region& a, const Region& b) { return a.score() > b.score(); });
-  return regions;
-}
 
 /// The value below which `share` of the weight lies.
 double weighted_quantile(std::vector<std::pair<double, double>> value_weight, double share) {
@@ -152,66 +93,6 @@ std::vector<InkStroke> without_blocks(const std::vector<InkStroke>& strokes, dou
   return kept;
 }
 
-/// Letters are short, frames and boxes of text are thin and have no partitions.
-bool could_be_a_wing(const std::vector<InkStroke>& walls, const Region& region, double thickness_px, double side_px) {
-  double longest = 0, thickness = 0, length = 0;
-  for (const std::size_t m : region.members) {
-    longest = std::max(longest, walls[m].length());
-    thickness += walls[m].thickness_px * walls[m].length();
-    length += walls[m].length();
-  }
-  return longest > 0.05 * side_px && region.junctions > static_cast<int>(region.members.size()) &&
-         thickness > 0.6 * thickness_px * length;
-}
-
-/// The two carry each other on: in line, with their ends facing each other.
-bool in_line(const InkStroke& one, const InkStroke& two, double reach_px) {
-  if (line_angle_between(one.axis.heading(), two.axis.heading()) > radians(4)) return false;
-  const double side = 0.5 * std::max(one.thickness_px, two.thickness_px) + 1;
-  const double low = std::min(one.thickness_px, two.thickness_px);
-  return std::abs(signed_line_distance(one.axis, two.axis.midpoint())) < side && 2 * side < 5 * low + 2 &&
-         gap_between(one.axis, two.axis) < reach_px;
-}
-
-/// The best region and what belongs to it: corridors, window bands and signs part a building into pieces. A piece
-/// belongs if it carries on one of its walls, lies among them, or is a wing with rooms of its own close by.
-std::vector<InkStroke> the_building(const std::vector<InkStroke>& walls, double thickness_px, double reach_px,
-                                    double side_px) {
-  const auto regions = connected_regions(walls, reach_px, side_px);
-  if (regions.empty()) return {};
-  std::vector<bool> adopted(regions.size(), false);
-  std::vector<InkStroke> building = pick(walls, regions.front().members);
-  adopted[0] = true;
-  Point2 low = regions.front().low, high = regions.front().high;
-  const auto any_pair = [&](const Region& region, const auto& holds) {
-    return std::any_of(region.members.begin(), region.members.end(), [&](std::size_t m) {
-      return std::any_of(building.begin(), building.end(), [&](const InkStroke& b) { return holds(walls[m], b); });
-    });
-  };
-  for (bool grown = true; grown;) {
-    grown = false;
-    for (std::size_t r = 1; r < regions.size(); ++r) {
-      if (adopted[r]) continue;
-      const Point2 new_low = low.cwiseMin(regions[r].low), new_high = high.cwiseMax(regions[r].high);
-      const bool grows = (new_high - new_low).prod() > 1.15 * (high - low).prod();
-      const bool carries_on =
-          any_pair(regions[r], [&](const InkStroke& m, const InkStroke& b) { return in_line(m, b, 1.3 * reach_px); });
-      if (!carries_on) {
-        if (regions[r].length < 0.03 * side_px) continue;
-        if (grows && !could_be_a_wing(walls, regions[r], thickness_px, side_px)) continue;
-        if (!any_pair(regions[r],
-                      [&](const InkStroke& m, const InkStroke& b) { return gap_between(m.axis, b.axis) < reach_px; }))
-          continue;
-      }
-      const auto more = pick(walls, regions[r].members);
-      building.insert(building.end(), more.begin(), more.end());
-      adopted[r] = grown = true;
-      low = new_low, high = new_high;
-    }
-  }
-  return building;
-}
-
 /// Gray blocks (signs on a copy without colour, shaded areas) are not as dark as the walls.
 std::vector<InkStroke> dark_enough(const std::vector<InkStroke>& strokes) {
   std::vector<std::pair<double, double>> darkness;
@@ -268,21 +149,40 @@ std::vector<InkStroke> with_pairs_joined(const std::vector<InkStroke>& strokes, 
   return joined;
 }
 
+/// The region that a person pointed at: the best of those around the place.
+const StrokeRegion& region_at(const std::vector<StrokeRegion>& regions, const std::optional<Point2>& at) {
+  if (at)
+    for (const auto& region : regions)
+      if (region.score() > 0 && (region.low.array() <= at->array()).all() && (region.high.array() >= at->array()).all())
+        return region;
+  return regions.front();
+}
+
+/// The best drawing, or the one at the place.
+void take_drawing(WallStrokes& out, std::vector<Drawing> drawings, const std::optional<Point2>& at) {
+  const std::size_t chosen = at ? drawing_at(drawings, *at) : 0;
+  out.walls.clear();
+  for (std::size_t d = 0; d < drawings.size(); ++d) {
+    const double share = drawings.front().score > 0 ? drawings[d].score / drawings.front().score : 1;
+    out.drawings.push_back({drawings[d].low, drawings[d].high, std::clamp(share, 0.0, 1.0), d == chosen});
+    if (d == chosen) out.walls = std::move(drawings[d].walls);
+  }
+}
+
 }  // namespace
 
 WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture, const LayoutParams& params,
-                         double least_px) {
+                         double least_px, const std::optional<Point2>& at) {
   const double side = std::max(picture.width, picture.height);
   const double bridge = 0.02 * side;
   std::vector<InkStroke> candidates;
   for (const auto& s : strokes)
     if (s.length() >= 0.6 * params.min_wall_share * side && s.length() >= 0.7 * s.thickness_px) candidates.push_back(s);
+  candidates = without_dash_dot_lines(candidates);
   const auto regions = connected_regions(candidates, bridge, side);
   WallStrokes out;
   if (regions.empty()) return out;
-  for (const auto& region : regions)
-    if (region.score() > 0.25 * regions.front().score() && region.score() > 0) out.regions += 1;
-  const auto plan = pick(candidates, regions.front().members);
+  const auto plan = pick(candidates, region_at(regions, at).members);
 
   std::vector<std::pair<double, double>> by_area;
   for (const auto& s : plan)
@@ -324,7 +224,7 @@ WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture
   for (const auto& s : out.walls)
     if (s.length() >= 5 * s.thickness_px) long_ones.emplace_back(s.thickness_px, s.length() * s.thickness_px);
   out.thickest_px = weighted_quantile(long_ones, 0.9);
-  out.walls = the_building(out.walls, out.thickness_px, params.max_opening_share * side, side);
+  take_drawing(out, rank_drawings(out.walls, out.thickness_px, params.max_opening_share * side, side), at);
   return out;
 }
 

@@ -37,7 +37,7 @@ struct LayoutOpening {
 struct LayoutSign {
   Point2 p_px = Point2::Zero();
   double radius_px = 0;
-  std::string colour;  ///< "green", "red", "blue", "yellow"
+  std::string colour;  ///< "green", "red", "blue", "yellow"; "grey" on a copy without colours
   double confidence = 1;
 };
 
@@ -45,6 +45,14 @@ struct LayoutScale {
   double metres_per_pixel = 0;
   double relative_sigma = 0;  ///< 0.1 = ten percent
   bool by_person = false;     ///< measured by somebody, not guessed from doors or sheet size
+};
+
+/// One of the drawings on a sheet: a floor, a wing, an overview.
+struct LayoutDrawing {
+  Point2 low_px = Point2::Zero();  ///< bounding box of its walls
+  Point2 high_px = Point2::Zero();
+  double score = 1;     ///< 0..1, how much it looks like a plan compared with the best one
+  bool chosen = false;  ///< the walls are this one's
 };
 
 /// An evacuation plan as a graph of walls.
@@ -56,6 +64,7 @@ struct LayoutMap {
   std::vector<LayoutOpening> openings;
   std::vector<Polygon> rooms_px;
   std::vector<LayoutSign> signs;
+  std::vector<LayoutDrawing> drawings;  ///< of the sheet, best first; several: a person should say which one is meant
   std::optional<Point2> you_are_here_px;
   std::optional<LayoutScale> scale;
   std::vector<std::string> warnings;  ///< for people, one line each

@@ -177,6 +177,17 @@ void read_rooms_and_signs(const Fields& fields, LayoutMap& layout) {
     layout.signs.push_back({Point2(number("x", 0), number("y", 0)), number("r", 0),
                             colour ? of.text(*colour, "signs") : "", std::clamp(number("confidence", 1), 0.0, 1.0)});
   }
+  for (const Json& drawing : fields.list("drawings")) {
+    const Fields of(drawing);
+    const Json* box = of.find("box");
+    if (!box) bad("drawings", "holds one without a box");
+    const auto n = Fields::numbers(*box, "drawings", 4, 4);
+    const Json* chosen = of.find("chosen");
+    const Json* score = of.find("score");
+    layout.drawings.push_back({Point2(n[0], n[1]), Point2(n[2], n[3]),
+                               score ? std::clamp(Fields::finite(*score, "drawings"), 0.0, 1.0) : 1.0,
+                               chosen && chosen->is_boolean() && chosen->get<bool>()});
+  }
   if (const Json* here = fields.find("you_are_here")) layout.you_are_here_px = Fields::point(*here, "you_are_here");
   for (const Json& warning : fields.list("warnings")) layout.warnings.push_back(fields.text(warning, "warnings"));
 }
@@ -261,6 +272,11 @@ void add_the_rest(Json& json, const LayoutMap& layout) {
                              {"r", rounded(sign.radius_px)},
                              {"colour", sign.colour},
                              {"confidence", rounded(sign.confidence)}});
+  json["drawings"] = Json::array();
+  for (const LayoutDrawing& drawing : layout.drawings)
+    json["drawings"].push_back({{"box", segment_json({drawing.low_px, drawing.high_px})},
+                                {"score", rounded(drawing.score)},
+                                {"chosen", drawing.chosen}});
   json["you_are_here"] = layout.you_are_here_px ? point_json(*layout.you_are_here_px) : Json();
   json["metres_per_pixel"] = layout.scale ? Json(layout.scale->metres_per_pixel) : Json();
   if (layout.scale)

@@ -42,6 +42,12 @@ void to_bgr_on_white(const cv::Mat& from, cv::Mat& to) {
 Result<cv::Mat> decode_here(std::span<const std::uint8_t> bytes, PictureType type, const PictureLimits& limits,
                             int page) {
   if (type == PictureType::kPdf) return draw_pdf_page(bytes, page, limits.pdf_megapixels);
+  std::vector<std::uint8_t> ended;
+  if (!picture_warnings(bytes).empty()) {  // a cut JPEG: with an end mark the decoder gives what there is
+    ended.assign(bytes.begin(), bytes.end());
+    ended.insert(ended.end(), {0xFF, 0xD9});
+    bytes = ended;
+  }
   const cv::Mat wrapped(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
   // Only JPEG is turned upright by the decoder, and only without IMREAD_UNCHANGED, which the others need for their
   // alpha.

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "core/result.hpp"
 
@@ -33,6 +35,10 @@ struct PictureHeader {
 /// What the first bytes say. kUnsupported for anything but PNG, JPEG, WebP and PDF; kTooLarge over the limits; kCorrupt
 /// for a header without usable dimensions. Reads no further than the header and allocates nothing.
 Result<PictureHeader> read_picture_header(std::span<const std::uint8_t> bytes, const PictureLimits& limits = {});
+
+/// What is amiss with a picture that can be read all the same, in words for people: a JPEG that ends before its picture
+/// does has its rest in gray.
+std::vector<std::string> picture_warnings(std::span<const std::uint8_t> bytes);
 
 /// The picture as 8 bit BGR (CV_8UC3), turned upright as EXIF asks, transparency laid on white, 16 bit, gray and CMYK
 /// converted. A PDF gives the asked page (0 = first).

@@ -60,6 +60,27 @@ std::optional<Size> jpeg_size(PictureBytes bytes) {
   return std::nullopt;
 }
 
+/// Whether the compressed data goes on to the end mark. Cameras put more behind it.
+bool jpeg_is_whole(PictureBytes bytes) {
+  constexpr std::uint8_t kScan = 0xDA, kEnd = 0xD9;
+  bool in_scan = false;
+  std::size_t at = 2;
+  while (at + 2 <= bytes.size()) {
+    const std::uint8_t marker = bytes[at + 1];
+    const bool is_data = bytes[at] != 0xFF || marker == 0x00 || marker == 0xFF || (marker >= 0xD0 && marker <= 0xD7);
+    if (is_data) {
+      if (!in_scan && marker != 0xFF) return true;  // no chain of segments: the decoder will say so
+      ++at;
+      continue;
+    }
+    if (marker == kEnd) return true;
+    in_scan = marker == kScan;
+    if (at + 4 > bytes.size()) return false;
+    at += 2 + std::size_t{big_endian(bytes, at + 2, 2)};
+  }
+  return false;
+}
+
 std::optional<Size> webp_size(PictureBytes bytes) {
   constexpr std::size_t kChunk = 12, kData = 20, kLeast = 30;
   if (bytes.size() < kLeast) return std::nullopt;
@@ -85,7 +106,18 @@ std::optional<PictureType> picture_type(PictureBytes bytes) {
   return std::nullopt;
 }
 
+bool is_tiff(PictureBytes bytes) {
+  return has_at(bytes, 0, std::string_view("II*\0", 4)) || has_at(bytes, 0, std::string_view("MM\0*", 4));
+}
+
 }  // namespace
+
+std::vector<std::string> picture_warnings(PictureBytes bytes) {
+  std::vector<std::string> warnings;
+  if (picture_type(bytes) == PictureType::kJpeg && !jpeg_is_whole(bytes))
+    warnings.push_back("The picture file is cut off: its lower part is missing.");
+  return warnings;
+}
 
 const char* media_type(PictureType type) {
   switch (type) {
@@ -113,6 +145,7 @@ Result<Ok> PictureLimits::validate() const {
 
 Result<PictureHeader> read_picture_header(PictureBytes bytes, const PictureLimits& limits) {
   const auto type = picture_type(bytes);
+  if (is_tiff(bytes)) return fail(Errc::kUnsupported, "this is a TIFF; save it as PNG, JPEG or PDF");
   if (!type) return fail(Errc::kUnsupported, "this is no PNG, JPEG, WebP or PDF");
   if (bytes.size() > limits.max_bytes)
     return fail(Errc::kTooLarge, "the file has more than " + std::to_string(limits.max_bytes / 1'000'000) + " MB");

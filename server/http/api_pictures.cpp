@@ -61,6 +61,7 @@ Result<PlanReadRequest> read_request(const Request& request) {
     if (corners.size() == 4) asked.corners_px = {corners[0], corners[1], corners[2], corners[3]};
   }
   if (f.has("metres_per_pixel")) asked.metres_per_pixel = f.number("metres_per_pixel", 1e-5, 100);
+  if (f.has("plan_at")) asked.plan_at_px = f.point("plan_at");
   if (!f.ok()) return f.error();
   return asked;
 }

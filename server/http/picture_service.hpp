@@ -25,6 +25,7 @@ struct PlanReadRequest {
   std::optional<std::array<Point2, 4>>
       corners_px;  ///< of the sheet in the picture: top left, top right, bottom right, bottom left
   std::optional<double> metres_per_pixel;  ///< of the rectified picture
+  std::optional<Point2> plan_at_px;        ///< rectified picture: of several drawings the one at this place
 };
 struct PlanReading {
   LayoutMap layout;  ///< in pixels of `rectified`

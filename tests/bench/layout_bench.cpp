@@ -1,158 +1,248 @@
-// How well and how fast plans are read: random buildings drawn as evacuation plans (flat sheet, and photographed).
-// Walls are scored by length within 0.5 % of the sheet, as share found (recall) and share right (precision); the
-// sheet's corners in percent of its side; signs by colour; taps = what a scripted person would do from the first
-// reading to the right plan: one to erase a false wall, one drag for a missing one, a drag for each sheet corner off by
-// over half a percent. Data: simulation, seeds below. One thread's CPU time.
+// How well and how fast plans are read: ./run bench layout [--seeds N] [--data DIR [--plans DIR]]
+// Random buildings drawn as evacuation plans (simulation; seeds 1, 2, ...; every third
+// scan a gray copy), read flat ("clean"), turned, blurred and noisy ("scan"), and photographed. With --data
+// also pictures with known truth: NAME.json (walls, doors, corners, rooms in pixels; "image" may name a picture below
+// --plans) beside NAME.png or NAME.jpg. Then how far confidences can be trusted, and what hostile files come to.
+// Scores as in layout_figures.hpp. Taps = what a scripted person would do from the first reading to the right plan: one
+// tap for a false wall, one drag for a missing one or for a corner of the sheet that is off by over half a percent.
+// One thread's processor time.
+#include <sys/resource.h>
+
 #include <algorithm>
-#include <array>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <ctime>
-#include <opencv2/core.hpp>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <random>
-#include <vector>
 
 #include "layout/read_layout.hpp"
+#include "recording/file_bytes.hpp"
+#include "recording/picture_file.hpp"
 #include "simulation/plan_picture.hpp"
 #include "simulation/random_building.hpp"
+#include "tests/bench/layout_figures.hpp"
 
 namespace {
 
 using namespace smokemap;
+using bench::PlanFigures;
+using bench::PlanTruth;
 
-double cpu_seconds_now() {
+double thread_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-std::vector<Segment2> segments(const LayoutMap& map) {
-  std::vector<Segment2> walls;
-  for (std::size_t w = 0; w < map.walls.size(); ++w) walls.push_back(map.wall_px(static_cast<int>(w)));
-  return walls;
-}
-
-double uncovered_length(const Segment2& s, const std::vector<Segment2>& those, double tolerance_px) {
-  double uncovered = 0;
-  for (double t = 0.5; t < s.length(); t += 2) {
-    const Point2 p = s.a + t * s.direction();
-    const bool covered = std::any_of(those.begin(), those.end(), [&](const Segment2& o) {
-      return distance(o, p) < tolerance_px && line_angle_between(o.heading(), s.heading()) < radians(10);
-    });
-    if (!covered) uncovered += 2;
-  }
-  return std::min(uncovered, s.length());
-}
-
-double covered_share(const std::vector<Segment2>& these, const std::vector<Segment2>& those, double tolerance_px) {
-  double uncovered = 0, all = 0;
-  for (const auto& s : these) all += s.length(), uncovered += uncovered_length(s, those, tolerance_px);
-  return all > 0 ? 1 - uncovered / all : 0;
-}
-
-/// Walls of which at least a piece worth a correction (2 % of the sheet, and half of the wall) is not in the others.
-int corrections(const std::vector<Segment2>& these, const std::vector<Segment2>& those, double sheet_px) {
-  return static_cast<int>(std::count_if(these.begin(), these.end(), [&](const Segment2& s) {
-    const double uncovered = uncovered_length(s, those, 0.005 * sheet_px);
-    return uncovered > 0.02 * sheet_px && 2 * uncovered > s.length();
-  }));
-}
+struct Row {
+  PlanFigures figures;
+  double sheet_percent = -1;  ///< mean error of the sheet's corners, of its side
+  double cpu_s = 0;
+  double scale_sigmas = -1;  ///< error of the guessed scale in its own sigmas; -1 = none
+};
 
 Point2 through(const std::array<double, 9>& H, const Point2& p) {
   const double z = H[6] * p.x() + H[7] * p.y() + H[8];
   return {(H[0] * p.x() + H[1] * p.y() + H[2]) / z, (H[3] * p.x() + H[4] * p.y() + H[5]) / z};
 }
 
-/// Signs of the drawing found with their colour, and signs found where the drawing has none of that colour.
-struct SignCount {
-  int truth = 0, found = 0, wrong = 0;
-};
-SignCount count_signs(const LayoutMap& truth, std::vector<LayoutSign> found, const cv::Rect2d& plan) {
-  SignCount count{static_cast<int>(truth.signs.size()), 0, 0};
-  std::erase_if(found, [&](const LayoutSign& s) { return !plan.contains({s.p_px.x(), s.p_px.y()}); });
-  for (const auto& sign : truth.signs) {
-    const auto hit = std::find_if(found.begin(), found.end(), [&](const LayoutSign& s) {
-      return s.colour == sign.colour && (s.p_px - sign.p_px).norm() < 1.2 * sign.radius_px;
-    });
-    if (hit != found.end()) count.found += 1, found.erase(hit);
+PlanTruth truth_of(const LayoutMap& map, const std::function<Point2(const Point2&)>& place) {
+  PlanTruth truth;
+  std::vector<std::vector<double>> headings(map.corners.size());
+  for (std::size_t w = 0; w < map.walls.size(); ++w) {
+    const Segment2 s = map.wall_px(static_cast<int>(w));
+    truth.walls.push_back({place(s.a), place(s.b)});
+    for (const int c : {map.walls[w].corner_a, map.walls[w].corner_b})
+      headings[static_cast<std::size_t>(c)].push_back(s.heading());
   }
-  count.wrong = static_cast<int>(found.size());
-  return count;
+  for (std::size_t c = 0; c < headings.size(); ++c)
+    if (std::any_of(headings[c].begin(), headings[c].end(),
+                    [&](double h) { return line_angle_between(h, headings[c].front()) > radians(20); }))
+      truth.corners.push_back(place(map.corners[c].p_px));
+  for (const auto& o : map.openings) truth.openings.push_back({place(o.gap_px.a), place(o.gap_px.b)});
+  for (auto room : map.rooms_px) {
+    for (auto& p : room) p = place(p);
+    truth.rooms.push_back(std::move(room));
+  }
+  for (auto sign : map.signs) {
+    sign.p_px = place(sign.p_px);
+    truth.signs.push_back(sign);
+  }
+  return truth;
 }
 
-struct Row {
-  double recall = 0, precision = 0, corner_percent = 0, cpu_s = 0;
-  int rooms = 0, true_rooms = 0, taps = 0;
-  SignCount signs;
-};
-
-Row measure(LayoutReading reading, const PlanPicture& picture, const LayoutMap& truth, bool photo) {
-  const auto& H = picture.homography.H_layout_photo;
+Row read_and_measure(const cv::Mat& picture, const PlanTruth& truth, LayoutReading* kept = nullptr) {
   Row row;
-  auto found = segments(reading.layout);
-  if (photo) {
-    for (auto& s : found) s = {through(H, s.a), through(H, s.b)};
-    for (auto& s : reading.layout.signs) s.p_px = through(H, s.p_px);
-    const double w = picture.sheet.cols - 1, h = picture.sheet.rows - 1;
-    const std::array<Point2, 4> corners{Point2(0, 0), Point2(w, 0), Point2(w, h), Point2(0, h)};
-    for (std::size_t i = 0; i < 4; ++i) {
-      const double off = 100 * (through(H, reading.sheet_corners_px[i]) - corners[i]).norm() / w;
-      row.corner_percent = std::max(row.corner_percent, off);
-      row.taps += off > 0.5;
-    }
-  }
-  const auto drawn = segments(truth);
-  std::vector<Segment2> allowed = drawn;  // a wall read across an opening costs nothing here: taps for gaps are few
-  for (const auto& o : truth.openings) allowed.push_back(o.gap_px);
-  const double sheet = picture.sheet.cols;
-  row.recall = covered_share(drawn, found, 0.005 * sheet);
-  row.precision = covered_share(found, allowed, 0.005 * sheet);
-  row.taps += corrections(drawn, found, sheet) + corrections(found, allowed, sheet);
-  row.rooms = static_cast<int>(reading.layout.rooms_px.size());
-  row.true_rooms = static_cast<int>(truth.rooms_px.size());
-  Point2 low = drawn.front().a, high = low;
-  for (const auto& s : drawn) low = low.cwiseMin(s.a).cwiseMin(s.b), high = high.cwiseMax(s.a).cwiseMax(s.b);
-  const double margin = 0.03 * sheet;
-  row.signs = count_signs(
-      truth, reading.layout.signs,
-      {low.x() - margin, low.y() - margin, high.x() - low.x() + 2 * margin, high.y() - low.y() + 2 * margin});
+  const double begin = thread_seconds();
+  auto reading = read_layout(picture);
+  row.cpu_s = thread_seconds() - begin;
+  if (!reading) return row;
+  row.figures = bench::measure_plan(reading->layout, truth);
+  if (kept) *kept = std::move(*reading);
   return row;
+}
+
+/// A copier's view of the sheet: a little askew, soft, noisy, gray for every third building.
+cv::Mat scan_of(const cv::Mat& sheet, int seed, cv::Mat& turn) {
+  turn =
+      cv::getRotationMatrix2D(cv::Point2f(0.5F * static_cast<float>(sheet.cols), 0.5F * static_cast<float>(sheet.rows)),
+                              seed % 2 ? 1.1 : -0.7, 1);
+  cv::Mat scan;
+  cv::warpAffine(sheet, scan, turn, sheet.size(), cv::INTER_AREA, cv::BORDER_CONSTANT, cv::Scalar(255, 255, 255));
+  cv::GaussianBlur(scan, scan, {5, 5}, 0.9);
+  if (seed % 3 == 0) {
+    cv::cvtColor(scan, scan, cv::COLOR_BGR2GRAY);
+    cv::cvtColor(scan, scan, cv::COLOR_GRAY2BGR);
+  }
+  cv::Mat noise(scan.size(), CV_16SC1), deep;
+  cv::RNG(static_cast<std::uint64_t>(seed)).fill(noise, cv::RNG::NORMAL, 0, 4);
+  cv::merge(std::vector<cv::Mat>{noise, noise, noise}, noise);
+  scan.convertTo(deep, CV_16SC3);
+  deep += noise;
+  deep.convertTo(scan, CV_8UC3);
+  return scan;
+}
+
+using Rows = std::map<std::string, std::vector<Row>>;
+
+bool add_renderings(int seed, Rows& rows) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+  const auto building = random_building({}, random);
+  if (!building) return false;
+  const auto plan = distort(*building, {}, random);
+  if (!plan) return false;
+  PlanPictureParams params;
+  params.width_px = 2400;
+  params.photo = true;
+  const auto picture = draw_plan(plan->drawn, params, random);
+  if (!picture) return false;
+  const auto truth = true_layout(*plan, *picture);
+  const auto flat = truth_of(truth.layout, [](const Point2& p) { return p; });
+  LayoutReading reading;
+  Row clean = read_and_measure(picture->sheet, flat, &reading);
+  if (const auto& scale = reading.layout.scale)
+    clean.scale_sigmas =
+        std::abs(std::log(scale->metres_per_pixel / picture->metres_per_pixel)) / scale->relative_sigma;
+  rows["clean"].push_back(clean);
+
+  cv::Mat turn;
+  const cv::Mat scan = scan_of(picture->sheet, seed, turn);
+  rows["scan"].push_back(read_and_measure(
+      scan, truth_of(truth.layout, [&](const Point2& p) {
+        return Point2(turn.at<double>(0, 0) * p.x() + turn.at<double>(0, 1) * p.y() + turn.at<double>(0, 2),
+                      turn.at<double>(1, 0) * p.x() + turn.at<double>(1, 1) * p.y() + turn.at<double>(1, 2));
+      })));
+
+  const auto& H = picture->homography.H_layout_photo;
+  const cv::Mat inverse = cv::Mat(3, 3, CV_64F, const_cast<double*>(H.data())).inv();
+  std::array<double, 9> back{};
+  for (int i = 0; i < 9; ++i) back[static_cast<std::size_t>(i)] = inverse.at<double>(i / 3, i % 3);
+  Row photo = read_and_measure(picture->photo,
+                               truth_of(truth.layout, [&](const Point2& p) { return through(back, p); }), &reading);
+  const double w = picture->sheet.cols - 1, h = picture->sheet.rows - 1;
+  const std::array<Point2, 4> corners{Point2(0, 0), Point2(w, 0), Point2(w, h), Point2(0, h)};
+  photo.sheet_percent = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double off = 100 * (through(H, reading.sheet_corners_px[i]) - corners[i]).norm() / w;
+    photo.sheet_percent += off / 4;
+    photo.figures.taps += off > 0.5;
+  }
+  rows["photo"].push_back(photo);
+  return true;
+}
+
+void add_pictures(const std::string& data, const std::string& plans, Rows& rows) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(data))
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  for (const auto& file : files) {
+    std::string image;
+    const auto truth = bench::read_truth(file.string(), &image);
+    if (truth.walls.empty()) continue;
+    std::vector<fs::path> candidates;
+    for (const char* extension : {".png", ".jpg"}) candidates.push_back(fs::path(file).replace_extension(extension));
+    if (!image.empty() && !plans.empty())
+      for (const auto& entry : fs::recursive_directory_iterator(plans))
+        if (entry.path().filename() == fs::path(image).filename()) candidates.push_back(entry.path());
+    const auto picture =
+        std::find_if(candidates.begin(), candidates.end(), [](const auto& p) { return fs::exists(p); });
+    if (picture == candidates.end()) continue;
+    const auto bytes = read_file(picture->string(), PictureLimits{}.max_bytes);
+    const auto decoded = bytes ? decode_picture(*bytes) : Result<cv::Mat>(bytes.error());
+    if (!decoded) continue;
+    rows[file.parent_path().filename().string()].push_back(read_and_measure(*decoded, truth));
+    const auto& row = rows[file.parent_path().filename().string()].back();
+    std::printf("  %-28s wall F1 %.3f corner %.3f room %.3f taps %d cpu %.2f s\n", file.stem().c_str(),
+                row.figures.walls.value(), row.figures.corners.value(), row.figures.rooms.value(), row.figures.taps,
+                row.cpu_s);
+  }
+}
+
+void print_table(const Rows& rows) {
+  std::printf("%-10s %5s %8s %6s %8s %7s %5s %7s %9s %11s %5s %6s\n", "kind", "plans", "wall F1", "worst", "corner F1",
+              "room F1", "off", "sheet", "signs R/P", "taps median", "max", "cpu s");
+  for (const auto& [kind, list] : rows) {
+    const double n = static_cast<double>(list.size());
+    double wall = 0, worst = 1, corner = 0, room = 0, off = 0, sheet = 0, cpu = 0, truth = 0, found = 0, wrong = 0;
+    std::vector<int> taps;
+    for (const auto& r : list) {
+      const auto& f = r.figures;
+      wall += f.walls.value(), worst = std::min(worst, f.walls.value()), corner += f.corners.value();
+      room += f.rooms.value(), off += f.rooms_off, sheet += r.sheet_percent, cpu = std::max(cpu, r.cpu_s);
+      truth += f.signs_true, found += f.signs_found, wrong += f.signs_wrong;
+      taps.push_back(f.taps);
+    }
+    std::sort(taps.begin(), taps.end());
+    std::printf("%-10s %5.0f %8.3f %6.3f %8.3f %7.3f %5.1f %6.2f%% %4.2f/%4.2f %11d %5d %6.2f\n", kind.c_str(), n,
+                wall / n, worst, corner / n, room / n, off / n, sheet / n, truth > 0 ? found / truth : 0,
+                found + wrong > 0 ? found / (found + wrong) : 0, taps[taps.size() / 2], taps.back(), cpu);
+  }
+}
+
+void print_trust(const Rows& rows, bool corners) {
+  int said = 0, right = 0, all = 0;
+  const double from = corners ? 0.85 : 0.9;
+  for (const auto& [kind, list] : rows)
+    for (const auto& r : list)
+      for (const auto& [confidence, is_right] : corners ? r.figures.said_corners : r.figures.said_walls) {
+        all += 1;
+        if (confidence >= from) said += 1, right += is_right;
+      }
+  std::printf("%s said >= %.2f: %d of %d, right %.3f\n", corners ? "corners" : "walls", from, said, all,
+              said ? static_cast<double>(right) / said : 0);
 }
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  std::printf("%-5s %-6s %7s %10s %7s %9s %7s %8s %5s %6s\n", "seed", "kind", "recall", "precision", "rooms",
-              "corners %", "signs", "wrong", "taps", "cpu s");
-  std::vector<int> taps;
-  for (int seed = 1; seed <= 6; ++seed) {
-    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
-    const auto building = random_building({}, random);
-    if (!building) return 1;
-    const auto plan = distort(*building, {}, random);
-    if (!plan) return 1;
-    PlanPictureParams params;
-    params.width_px = 2400;
-    params.photo = true;
-    const auto picture = draw_plan(plan->drawn, params, random);
-    if (!picture) return 1;
-    const auto truth = true_layout(*plan, *picture);
-    for (const bool photo : {false, true}) {
-      const double begin = cpu_seconds_now();
-      auto reading = read_layout(photo ? picture->photo : picture->sheet);
-      const double cpu_s = cpu_seconds_now() - begin;
-      const char* kind = photo ? "photo" : "sheet";
-      if (!reading) {
-        std::printf("%-5d %-6s %s\n", seed, kind, reading.error().message.c_str());
-        continue;
-      }
-      const Row row = measure(std::move(*reading), *picture, truth.layout, photo);
-      taps.push_back(row.taps);
-      std::printf("%-5d %-6s %7.3f %10.3f %3d/%-3d %9.2f %3d/%-3d %8d %5d %6.2f\n", seed, kind, row.recall,
-                  row.precision, row.rooms, row.true_rooms, row.corner_percent, row.signs.found, row.signs.truth,
-                  row.signs.wrong, row.taps, cpu_s);
-    }
+  std::string data, plans;
+  int seeds = 6;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    if (std::strcmp(argv[i], "--data") == 0) data = argv[i + 1];
+    if (std::strcmp(argv[i], "--plans") == 0) plans = argv[i + 1];
+    if (std::strcmp(argv[i], "--seeds") == 0) seeds = std::atoi(argv[i + 1]);
   }
-  std::sort(taps.begin(), taps.end());
-  if (!taps.empty()) std::printf("taps, median: %d\n", taps[taps.size() / 2]);
+  Rows rows;
+  for (int seed = 1; seed <= seeds; ++seed)
+    if (!add_renderings(seed, rows)) return 1;
+  if (!data.empty() && std::filesystem::is_directory(data)) add_pictures(data, plans, rows);
+  print_table(rows);
+  print_trust(rows, false);
+  print_trust(rows, true);
+  int guessed = 0, within = 0;
+  for (const auto& row : rows["clean"])
+    if (row.scale_sigmas >= 0) guessed += 1, within += row.scale_sigmas <= 2;
+  std::printf("scale guessed %d, within two sigma %d\n", guessed, within);
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  std::printf("peak memory %ld MiB (the drawings included)\n", used.ru_maxrss / 1024);
+  bench::print_hostile_files();
 }

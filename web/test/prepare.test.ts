@@ -42,13 +42,49 @@ async function desk(shelf: { value: unknown } = { value: null }) {
 const photo = new Blob(['x'], { type: 'image/jpeg' });
 const pdf = new Blob(['x'], { type: 'application/pdf' });
 
+describe('a sheet with several drawings', () => {
+  const twoFloors = (homography: readonly number[]) => ({
+    ...(JSON.parse(reading) as object),
+    homography,
+    drawings: [
+      { box: [0, 0, 300, 300], score: 1, chosen: true },
+      { box: [400, 0, 700, 300], score: 0.8, chosen: false },
+      { box: [450, 50, 500, 100], score: 0.1, chosen: false },
+    ],
+  });
+  const kIdentity = [1, 0, 0, 0, 1, 0, 0, 0, 1];
+
+  test('reads the one that is tapped, the smallest under the finger, for one tap that can be taken back', async () => {
+    const { prepare, server } = await desk();
+    server.answers['/read'] = () => twoFloors(kIdentity);
+    await prepare.upload(photo);
+    expect(await prepare.choosePlan([420, 20])).toBe(true);
+    expect(JSON.parse(server.bodies.at(-1)!)).toEqual({ plan_at: [420, 20] });
+    expect([prepare.taps, prepare.canUndo]).toEqual([1, true]);
+  });
+  test('keeps the corners of the sheet where they were given', async () => {
+    const { prepare, server } = await desk();
+    server.answers['/read'] = () => twoFloors([1, 0.1, 0, 0, 1, 0, 0, 0, 1]);
+    await prepare.upload(photo);
+    await prepare.choosePlan([420, 20]);
+    expect(Object.keys(JSON.parse(server.bodies.at(-1)!) as object)).toEqual(['corners', 'plan_at']);
+  });
+  test('asks nothing where the finger meets no other drawing', async () => {
+    const { prepare, server } = await desk();
+    server.answers['/read'] = () => twoFloors(kIdentity);
+    await prepare.upload(photo);
+    expect(await prepare.choosePlan([100, 100])).toBe(false);
+    expect(server.asked).toHaveLength(2);
+  });
+});
+
 describe('a picture that is chosen', () => {
   test('is read at once: walls come before any question', async () => {
     const { prepare, server } = await desk();
     await prepare.upload(photo);
     expect(prepare.step).toBe('walls');
     expect(prepare.draft?.walls).toHaveLength(5);
-    expect(prepare.warnings).toEqual(['the legend covers part of the plan']);
+    expect(prepare.warnings).toEqual(['dark', 'the legend covers part of the plan']);
     expect(server.asked).toEqual(['/api/plans', '/api/plans/p1/read']);
     expect(prepare.corners).toEqual([[0, 0], [799, 0], [799, 599], [0, 599]]);
     expect(prepare.busy).toBe('');

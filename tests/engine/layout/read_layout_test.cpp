@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <stop_token>
 
@@ -16,6 +17,12 @@ using testing::covered_by;
 using testing::draw_office;
 using testing::wall_segments;
 
+/// The plain office, read once for all tests that only look at it.
+const Result<LayoutReading>& office_reading() {
+  static const Result<LayoutReading> reading = read_layout(draw_office().picture);
+  return reading;
+}
+
 int count_kind(const LayoutMap& map, OpeningKind kind) {
   return static_cast<int>(
       std::count_if(map.openings.begin(), map.openings.end(), [&](const LayoutOpening& o) { return o.kind == kind; }));
@@ -23,7 +30,7 @@ int count_kind(const LayoutMap& map, OpeningKind kind) {
 
 TEST(ReadLayout, FindsEveryWallOfACleanDrawingAndNothingElse) {
   const auto plan = draw_office();
-  const auto reading = read_layout(plan.picture);
+  const auto& reading = office_reading();
   ASSERT_TRUE(reading.ok());
   const auto found = wall_segments(reading->layout);
   EXPECT_GT(covered_by(plan.walls, found, 6), 0.97);
@@ -32,7 +39,7 @@ TEST(ReadLayout, FindsEveryWallOfACleanDrawingAndNothingElse) {
 
 TEST(ReadLayout, ClosesRoomsAtTheirDoors) {
   const auto plan = draw_office();
-  const auto reading = read_layout(plan.picture);
+  const auto& reading = office_reading();
   ASSERT_TRUE(reading.ok());
   EXPECT_EQ(static_cast<int>(reading->layout.rooms_px.size()), plan.rooms);
   EXPECT_EQ(reading->layout.openings.size(), plan.doors.size());
@@ -40,7 +47,7 @@ TEST(ReadLayout, ClosesRoomsAtTheirDoors) {
 }
 
 TEST(ReadLayout, GuessesTheScaleFromDoorsAndSaysSo) {
-  const auto reading = read_layout(draw_office().picture);
+  const auto& reading = office_reading();
   ASSERT_TRUE(reading.ok());
   ASSERT_TRUE(reading->layout.scale.has_value());
   EXPECT_NEAR(reading->layout.scale->metres_per_pixel, 0.9 / 70, 0.25 * 0.9 / 70);
@@ -51,14 +58,14 @@ TEST(ReadLayout, GuessesTheScaleFromDoorsAndSaysSo) {
 TEST(ReadLayout, TakesAGivenScaleForGranted) {
   LayoutOptions options;
   options.metres_per_pixel = 0.02;
-  const auto reading = read_layout(draw_office().picture, options);
+  const auto reading = read_layout(draw_office(0.7).picture, options);
   ASSERT_TRUE(reading.ok());
   EXPECT_DOUBLE_EQ(reading->layout.scale->metres_per_pixel, 0.02);
   EXPECT_TRUE(reading->layout.scale->by_person);
 }
 
 TEST(ReadLayout, SeesTheSignInItsColour) {
-  const auto reading = read_layout(draw_office().picture);
+  const auto& reading = office_reading();
   ASSERT_TRUE(reading.ok());
   ASSERT_EQ(reading->layout.signs.size(), 1U);
   EXPECT_EQ(reading->layout.signs.front().colour, "green");
@@ -98,7 +105,7 @@ TEST(ReadLayout, KeepsObliqueWallsOblique) {
 }
 
 TEST(ReadLayout, ReadsTheSamePlanAtHalfAndDoubleSize) {
-  for (const double unit : {0.6, 1.7}) {
+  for (const double unit : {0.6, 1.4}) {
     const auto plan = draw_office(unit);
     const auto reading = read_layout(plan.picture);
     ASSERT_TRUE(reading.ok()) << unit;
@@ -144,6 +151,46 @@ TEST(ReadLayout, SeesThroughShadowsAndNoise) {
   const auto found = wall_segments(reading->layout);
   EXPECT_GT(covered_by(plan.walls, found, 6), 0.93);
   EXPECT_GT(covered_by(found, plan.walls, 6), 0.90);
+}
+
+/// Share of the ring's length on which some wall of like direction lies.
+double share_of_ring_read(const LayoutMap& map, const Point2& centre, double radius) {
+  int hit = 0;
+  const int samples = 360;
+  for (int i = 0; i < samples; ++i) {
+    const double a = 2 * kPi * i / samples;
+    const Point2 p = centre + radius * Point2(std::cos(a), std::sin(a));
+    for (const auto& wall : wall_segments(map))
+      if (distance(wall, p) < 6 && line_angle_between(wall.heading(), a + kPi / 2) < radians(16)) {
+        ++hit;
+        break;
+      }
+  }
+  return static_cast<double>(hit) / samples;
+}
+
+TEST(ReadLayout, ReadsMostOfACurvedWallAsAChainOfShortOnes) {
+  cv::Mat picture(1100, 1600, CV_8UC3, cv::Scalar(255, 255, 255));
+  const cv::Scalar ink(20, 20, 20);
+  cv::circle(picture, {800, 550}, 400, ink, 12, cv::LINE_AA);
+  cv::line(picture, {400, 550}, {1200, 550}, ink, 8);
+  cv::line(picture, {800, 150}, {800, 550}, ink, 8);
+  const auto reading = read_layout(picture);
+  ASSERT_TRUE(reading.ok());
+  EXPECT_GT(share_of_ring_read(reading->layout, {800, 550}, 400), 0.65);
+  EXPECT_GE(reading->layout.rooms_px.size(), 1U);
+}
+
+TEST(ReadLayout, TakesTheScaleFromABarBesideThePlan) {
+  auto plan = draw_office(1.0);
+  const int division = static_cast<int>(1 / (0.9 / 70));  // a metre, if doors have 0.9
+  for (int i = 0; i < 4; ++i)
+    cv::rectangle(plan.picture, cv::Rect(200 + i * division, 1000, division, 10), cv::Scalar(0, 0, 0),
+                  i % 2 ? 1 : cv::FILLED);
+  const auto reading = read_layout(plan.picture);
+  ASSERT_TRUE(reading.ok() && reading->layout.scale.has_value());
+  EXPECT_NEAR(reading->layout.scale->metres_per_pixel, 0.9 / 70, 0.03 * 0.9 / 70);
+  EXPECT_LT(reading->layout.scale->relative_sigma, 0.2);
 }
 
 TEST(ReadLayout, SaysNoToPicturesWithoutWalls) {
@@ -195,7 +242,7 @@ TEST(ReadLayout, GivesTheSameBytesAtAnyThreadCount) {
 }
 
 TEST(ReadLayout, ConfidencesAndDegreesAreWhatTheyClaim) {
-  const auto reading = read_layout(draw_office().picture);
+  const auto& reading = office_reading();
   ASSERT_TRUE(reading.ok());
   std::vector<int> degree(reading->layout.corners.size(), 0);
   for (const auto& w : reading->layout.walls) {

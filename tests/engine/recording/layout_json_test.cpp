@@ -29,6 +29,7 @@ LayoutDocument random_document(std::uint64_t seed) {
   layout.signs.push_back({at(), 7, "green", 0.5});
   layout.you_are_here_px = at();
   layout.scale = LayoutScale{0.0125, 0.1, true};
+  layout.drawings = {{{1, 2}, {300.5, 200}, 1, true}, {{310, 2}, {400, 90}, 0.25, false}};
   layout.warnings = {"the sheet is \"tilted\""};
   document.homography.H_layout_photo = {1, 0.5, 3, 0, 1, 4, 1e-5, 0, 1};
   document.sheet_corners = {{at(), at(), at(), at()}};
@@ -64,6 +65,17 @@ TEST_P(LayoutRoundTrip, KeepsEverything) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, LayoutRoundTrip, testing::Range<std::uint64_t>(1, 6));
+
+TEST(LayoutJson, KeepsTheDrawingsOfTheSheetAndWhichOneIsMeant) {
+  const auto read = layout_from_json(to_json(random_document(3)));
+  ASSERT_TRUE(read.ok());
+  ASSERT_EQ(read->layout.drawings.size(), 2U);
+  EXPECT_EQ(read->layout.drawings[0].high_px, Point2(300.5, 200));
+  EXPECT_TRUE(read->layout.drawings[0].chosen);
+  EXPECT_DOUBLE_EQ(read->layout.drawings[1].score, 0.25);
+  EXPECT_FALSE(layout_from_json(R"({"size":[9,9],"walls":[],"drawings":[{"score":1}]})").ok());
+  EXPECT_FALSE(layout_from_json(R"({"size":[9,9],"walls":[],"drawings":[{"box":[1,2,3]}]})").ok());
+}
 
 TEST(LayoutJson, JoinsTheEndsOfWallsThatTouchWhereCornersAreNotGiven) {
   const auto read = layout_from_json(

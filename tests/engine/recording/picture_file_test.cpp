@@ -145,6 +145,45 @@ TEST(PictureFile, DrawsAPageOfAPdfAtTheAskedResolution) {
   EXPECT_THAT(decode_picture(broken), test::Fails(Errc::kCorrupt));
 }
 
+TEST(PictureFile, CutJpegsAreReadWithAWarning) {
+  cv::Mat noise(200, 300, CV_8UC3);
+  cv::RNG(5).fill(noise, cv::RNG::UNIFORM, 0, 256);
+  for (const bool progressive : {false, true}) {
+    FileBytes whole;
+    cv::imencode(".jpg", noise, whole, {cv::IMWRITE_JPEG_PROGRESSIVE, progressive});
+    EXPECT_TRUE(picture_warnings(whole).empty()) << progressive;
+    FileBytes with_more = whole;  // cameras put previews and the like behind the picture
+    with_more.insert(with_more.end(), {1, 2, 3, 0xFF, 0xDA, 9});
+    EXPECT_TRUE(picture_warnings(with_more).empty()) << progressive;
+    FileBytes cut = whole;
+    cut.resize(cut.size() * 2 / 3);
+    EXPECT_EQ(picture_warnings(cut).size(), 1U) << progressive;
+    EXPECT_THAT(decode_picture(cut), test::IsOk());
+  }
+  EXPECT_TRUE(picture_warnings(encoded(".png", noise)).empty());
+  EXPECT_TRUE(picture_warnings(FileBytes{}).empty());
+}
+
+TEST(PictureFile, WarningsNeverReadBeyondTheFile) {
+  const FileBytes whole = turned_jpeg(6);
+  for (std::size_t length = 0; length <= whole.size(); ++length) (void)picture_warnings(std::span(whole).first(length));
+  std::mt19937_64 random(2);
+  for (int i = 0; i < 200; ++i) {
+    FileBytes bytes = whole;
+    for (int wound = 0; wound < 4; ++wound)
+      bytes[uniform_index(random, bytes.size())] = static_cast<std::uint8_t>(random());
+    (void)picture_warnings(bytes);
+  }
+}
+
+TEST(PictureFile, SaysOfATiffWhatToDo) {
+  for (const std::string& head : {std::string("II*\0\x08\0\0\0", 8), std::string("MM\0*\0\0\0\x08", 8)}) {
+    const auto picture = decode_picture(FileBytes(head.begin(), head.end()));
+    ASSERT_THAT(picture, test::Fails(Errc::kUnsupported));
+    EXPECT_NE(picture.error().message.find("TIFF"), std::string::npos);
+  }
+}
+
 TEST(PictureFile, TakesNothingElse) {
   for (const std::string& text :
        {std::string("GIF89a......"), std::string("<svg/>"), std::string("BM6"), std::string()})

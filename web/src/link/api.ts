@@ -28,7 +28,7 @@ export class Api {
 
   readPlan(
     planId: string,
-    options: { corners?: readonly (readonly [number, number])[]; metres_per_pixel?: number },
+    options: { corners?: readonly (readonly [number, number])[]; metres_per_pixel?: number; plan_at?: readonly [number, number] },
   ): Promise<Answer<{ layout: LayoutDocument; rectified: string }>> {
     const path = `/api/plans/${encodeURIComponent(planId)}/read`;
     return this.#json('POST', path, parseReadAnswer, JSON.stringify(options), 'application/json');

@@ -62,6 +62,29 @@ export function draftFrom(planId: string, rectified: string, document: LayoutDoc
   return { planId, rectified, document, walls, openings, metresPerPixel, scaleByPerson: document.scale_by_person };
 }
 
+export interface Box {
+  readonly low: LayoutPx;
+  readonly high: LayoutPx;
+}
+
+/** Other drawings on the sheet, any of which could be the floor that is meant. */
+export const otherDrawings = ({ document }: PlanDraft): readonly Box[] =>
+  document.drawings
+    .filter(({ chosen }) => !chosen)
+    .map(({ box: [x1, y1, x2, y2] }) => ({ low: [x1, y1], high: [x2, y2] }));
+
+/** The smallest of the other drawings under the finger. */
+export function drawingAt(draft: PlanDraft, [x, y]: LayoutPx): Box | undefined {
+  const size = ({ low, high }: Box): number => (high[0] - low[0]) * (high[1] - low[1]);
+  return otherDrawings(draft)
+    .filter(({ low, high }) => x >= low[0] && x <= high[0] && y >= low[1] && y <= high[1])
+    .sort((a, b) => size(a) - size(b))[0];
+}
+
+/** The picture was read after its corners were given, not as it was taken. */
+export const isRectified = ({ document }: PlanDraft): boolean =>
+  document.homography?.some((value, i) => Math.abs(value - (i % 4 === 0 ? 1 : 0)) > 1e-9) ?? false;
+
 function nearestLine(lines: readonly { readonly a: LayoutPx; readonly b: LayoutPx }[], p: LayoutPx, reach: number): number | undefined {
   let best: number | undefined;
   let nearest = reach;

@@ -150,6 +150,7 @@ export const de: Readonly<Record<Key, string>> = {
   'prepare.cornersHint': 'Die vier Ecken ziehen, wenn das Foto schief ist',
   'prepare.cornersHow': 'Die vier Griffe auf die Ecken des Plans setzen. Der Kreis zeigt, was unter dem Finger liegt.',
   'prepare.readAgain': 'Mit diesen Ecken lesen',
+  'prepare.otherPlan': 'Diesen Plan lesen',
   'prepare.wallCount': '{on} Wände, {doubtful} zweifelhaft, {off} ausgeschaltet',
   'prepare.wallsOfFloor': '{count} Wände in Gebrauch',
   'prepare.wallsHow': 'Gestrichelte Wände sind zweifelhaft. Wand antippen schaltet sie aus und ein, Lücke antippen sagt, was sie ist; Zeichnen fügt eine Wand von Ecke zu Ecke hinzu.',

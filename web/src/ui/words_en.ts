@@ -148,6 +148,7 @@ export const en = {
   'prepare.cornersHint': 'Drag the four corners if the photo is askew',
   'prepare.cornersHow': 'Put the four handles on the corners of the plan. The circle shows what lies under your finger.',
   'prepare.readAgain': 'Read with these corners',
+  'prepare.otherPlan': 'Read this plan',
   'prepare.wallCount': '{on} walls, {doubtful} doubtful, {off} switched off',
   'prepare.wallsOfFloor': '{count} walls in use',
   'prepare.wallsHow': 'Dashed walls are doubtful. Tap a wall to switch it off or on, a gap to say what it is; choose Draw to add a wall from corner to corner.',

@@ -20,6 +20,10 @@ const layoutDocument = v.looseObject({
   scale_sigma: v.nullish(number, null),
   scale_by_person: v.optional(v.boolean(), false),
   rectified: v.optional(v.string()),
+  /** Parts of the sheet that could be the plan, best first: the walls are those of the chosen one. */
+  drawings: v.optional(v.array(v.object({ box: segment, score: number, chosen: v.boolean() })), []),
+  /** Photo to rectified picture; the identity where the picture was read as it is. */
+  homography: v.nullish(v.array(number), null),
   sheet_corners: v.nullish(v.array(pair), null),
   you_are_here: v.nullish(pair, null),
   warnings: v.optional(v.array(v.string()), []),

@@ -10,6 +10,8 @@ import {
   closeOpening,
   documentOf,
   draftFrom,
+  drawingAt,
+  isRectified,
   nameOpening,
   openingAt,
   type OpeningKind,
@@ -66,6 +68,8 @@ export class Prepare {
   warnings = $state.raw<readonly string[]>([]);
   /** The document that was chosen, while its pages can be turned. */
   pdf = $state.raw<{ readonly file: Blob; readonly page: number } | null>(null);
+  /** What was amiss with the file itself: no reading makes it good. */
+  #ofUpload: readonly string[] = [];
   #state = $state.raw<Preparation>(kNothingPrepared);
   /** What a finger holds right now; becomes a step when it is let go. */
   #held = $state.raw<Partial<Edit> | null>(null);
@@ -169,7 +173,7 @@ export class Prepare {
     if (!answer.ok) return this.#fail(answer.message);
     const { plan_id, width, height, warnings } = answer.value;
     this.pdf = file.type === 'application/pdf' ? { file, page } : null;
-    this.warnings = warnings;
+    this.warnings = this.#ofUpload = warnings;
     this.scalePoints = [];
     this.#put(begun({ planId: plan_id, width, height }, defaultCorners(width, height)));
     await this.#loadPictures();
@@ -181,11 +185,22 @@ export class Prepare {
     if (this.pdf && this.pdf.page + by >= 1) await this.upload(this.pdf.file, this.pdf.page + by);
   }
 
-  async read(withCorners: boolean): Promise<void> {
+  /** Another drawing of the sheet is the floor that is meant; false when there is none under the finger. */
+  async choosePlan(p: LayoutPx): Promise<boolean> {
+    if (!this.draft || !drawingAt(this.draft, p)) return false;
+    await this.read(isRectified(this.draft), p);
+    return true;
+  }
+
+  /** @param planAt of several drawings on the sheet the one at this place */
+  async read(withCorners: boolean, planAt?: LayoutPx): Promise<void> {
     const source = this.source;
     if (!source) return;
     this.busy = t('prepare.reading');
-    const answer = await this.#session.api.readPlan(source.planId, withCorners ? { corners: [...this.corners] } : {});
+    const answer = await this.#session.api.readPlan(source.planId, {
+      ...(withCorners && { corners: [...this.corners] }),
+      ...(planAt && { plan_at: planAt }),
+    });
     if (source !== this.source) return;
     if (!answer.ok) {
       this.step = 'corners';
@@ -193,7 +208,7 @@ export class Prepare {
     }
     const { layout, rectified } = answer.value;
     const proposed = !withCorners && layout.sheet_corners?.length === 4 ? layout.sheet_corners : this.corners;
-    this.warnings = layout.warnings;
+    this.warnings = [...this.#ofUpload, ...layout.warnings];
     this.scalePoints = [];
     this.#put(asRead(this.#state, { corners: proposed, draft: draftFrom(source.planId, rectified, layout) }));
     await this.#loadPictures();

@@ -1,0 +1,70 @@
+#include "layout/gaps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace smokemap {
+
+std::vector<LooseEnd> loose_ends(const LayoutMap& map) {
+  std::vector<LooseEnd> ends;
+  for (std::size_t w = 0; w < map.walls.size(); ++w) {
+    const Segment2 s = map.wall_px(static_cast<int>(w));
+    if (s.length() < 1e-9) continue;
+    if (map.corners[static_cast<std::size_t>(map.walls[w].corner_a)].degree == 1)
+      ends.push_back({map.walls[w].corner_a, static_cast<int>(w), s.a, -s.direction()});
+    if (map.corners[static_cast<std::size_t>(map.walls[w].corner_b)].degree == 1)
+      ends.push_back({map.walls[w].corner_b, static_cast<int>(w), s.b, s.direction()});
+  }
+  return ends;
+}
+
+std::vector<Gap> gaps_ahead(const LayoutMap& map, double thickness_px, double reach_px) {
+  const auto ends = loose_ends(map);
+  std::vector<Gap> gaps;
+  std::set<std::pair<int, int>> seen;
+  for (const auto& end : ends) {
+    const double own = map.walls[static_cast<std::size_t>(end.wall)].thickness_px;
+    double best = reach_px;
+    Gap gap;
+    for (const auto& other : ends) {
+      if (other.corner == end.corner || other.outward.dot(end.outward) > -0.97) continue;
+      const Point2 d = other.p - end.p;
+      const double ahead = d.dot(end.outward), beside = std::abs(d.x() * end.outward.y() - d.y() * end.outward.x());
+      if (ahead <= 0 || ahead >= best || beside > 0.7 * std::max(thickness_px, own)) continue;
+      best = ahead;
+      gap = {{end.p, other.p}, end.corner, other.corner, -1, own};
+    }
+    const Segment2 ray{end.p + 0.5 * end.outward, end.p + best * end.outward};
+    for (std::size_t w = 0; w < map.walls.size(); ++w) {
+      if (static_cast<int>(w) == end.wall) continue;
+      Segment2 wall = map.wall_px(static_cast<int>(w));
+      if (line_angle_between(wall.heading(), ray.heading()) < 0.6) continue;
+      const Point2 more = 0.6 * thickness_px * wall.direction();
+      wall = {wall.a - more, wall.b + more};
+      const auto hit = intersection(ray, wall);
+      if (!hit) continue;
+      const double ahead = (*hit - end.p).dot(end.outward);
+      if (ahead >= best) continue;
+      best = ahead;
+      gap = {{end.p, *hit}, end.corner, -1, static_cast<int>(w), own};
+    }
+    if (best >= reach_px || best < 1) continue;
+    const auto key = std::pair{std::min(gap.corner_a, gap.corner_b), std::max(gap.corner_a, gap.corner_b)};
+    if (gap.corner_b >= 0 && !seen.insert(key).second) continue;
+    gaps.push_back(gap);
+  }
+  return gaps;
+}
+
+double covered_share(const Segment2& s, const cv::Mat& covered) {
+  int inside = 0, all = 0;
+  for (double t = 1; t < s.length(); t += 1, ++all) {
+    const Point2 p = s.a + t * s.direction();
+    const int x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
+    if (x >= 0 && y >= 0 && x < covered.cols && y < covered.rows && covered.at<uchar>(y, x)) ++inside;
+  }
+  return all ? static_cast<double>(inside) / all : 0;
+}
+
+}  // namespace smokemap
