@@ -32,9 +32,8 @@ struct AcgParams {
   double moved_m = 0.30;       ///< displacement above which a wall counts as moved rather than confirmed
 
   // Does the plan fit.
-  double fits_above =
-      0.80;  ///< share of the sensed wall length that the plan explains: right merges show 0.9, one 2 m off 0.67
-  double fits_not_below = 0.45;
+  double fits_above = 0.70;      ///< PlanFit::score: right merges of furnished buildings show 0.73 and more
+  double fits_not_below = 0.50;  ///< plans of other buildings show 0.35 and less
 
   int covariance_every = 5;  ///< updates between full computations of sigmas; 1 = always
   Result<Ok> validate() const;

@@ -38,17 +38,25 @@ Result<Ok> AcgParams::validate() const {
       .result();
 }
 
-PlanFit AutoCompleteGraph::Impl::plan_fit(const SolveInput& input, const Learnt& l) const {
+/// Asked from both sides, for each alone can be fooled: how much of what was sensed the plan explains (furniture is not
+/// drawn), and on how much of the wall length that sensors spoke about plan and sensors agree (a plan bent onto the
+/// wrong walls has many that beams go through, and leaves many to be new).
+PlanFit AutoCompleteGraph::Impl::plan_fit(const SolveInput& input, const MergedMap& merged, const Learnt& l) const {
   constexpr int kViewsForAVerdict = 4;  // one view from the start explains little of any plan
-  double linked = 0, all = 0;
+  double linked = 0, all = 0, agreed = 0, spoken = 0;
   int views = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (nodes.spaced()[i] && ++views)
       for (const ScanPiece& p : nodes.views()[i].pieces) all += p.segment.length();
   for (const PieceLink& link : input.links) linked += link.weight > 0.3 ? link.part_robot.length() : 0;
+  for (const MergedWall& w : merged.walls) {
+    const bool agrees = w.state == WallState::kConfirmed || w.state == WallState::kMoved;
+    agreed += agrees ? w.evidence_m : 0;
+    spoken += w.state != WallState::kUnseen ? w.evidence_m : 0;
+  }
   PlanFit fit;
   if (all < 10 || views < kViewsForAVerdict || !l.aligned) return fit;
-  fit.score = std::min(1.0, linked / all);
+  fit.score = 0.5 * (std::min(1.0, linked / all) + (spoken > 0 ? agreed / spoken : 0));
   fit.verdict = fit.score >= params.fits_above       ? "fits"
                 : fit.score >= params.fits_not_below ? "doubtful"
                                                      : "does not fit";
@@ -72,11 +80,13 @@ MergedMap AutoCompleteGraph::Impl::read_out(const PoseGraph& graph, const SolveI
     solved.wall_states = l.walls;
     read_out_plan(solved, params, out);
     for (const WallState s : l.walls) there.push_back(s != WallState::kMissing);
-    out.fit = plan_fit(input, l);
+    out.anchors = read_anchors(l);
   }
   const bool with_plan = !there.empty();
   read_out_new_walls(
       find_new_walls(nodes.views(), nodes.spaced(), with_plan ? &*plan : nullptr, l.state, there, params), out);
+  if (with_plan) out.fit = plan_fit(input, out, l);
+  l.fits = out.fit.verdict == "fits";
   return out;
 }
 
@@ -108,6 +118,7 @@ Result<MergedMap> AutoCompleteGraph::Impl::update(const PoseGraph& graph, const 
       warm = warm && nodes.way_m().back() - work.taken_way_m < kWarmWay_m;
       if (const auto done = take_up(work, progress); !done) return done.error();
       if (const auto done = correct(work, warm, progress, input); !done) return done.error();
+      if (const auto done = question(work, input, progress); !done) return done.error();
       ++work.updates;
     } else {
       work.sigma_m.assign(plan->corners.size(), start ? 1.0 : 10.0);
@@ -152,13 +163,14 @@ void AutoCompleteGraph::clear_plan() {
 void AutoCompleteGraph::set_start(const PlanStart& start) {
   impl_->start = start;
   impl_->learnt.aligned = false;
+  impl_->learnt.aligned_way_m = 0;
   impl_->learnt.state.corners.clear();
 }
 
 void AutoCompleteGraph::add_anchor(const std::string& id, const Point2& p_layout_px, const Point2& p_map) {
   impl_->anchors[id] = {p_layout_px, p_map};
   impl_->words_changed = true;
-  if (impl_->anchors.size() == 2 && !impl_->start) impl_->learnt.aligned = false;
+  if (impl_->anchors.size() == 2 && !impl_->start) impl_->learnt.aligned = false, impl_->learnt.aligned_way_m = 0;
 }
 
 void AutoCompleteGraph::remove_anchor(const std::string& id) {

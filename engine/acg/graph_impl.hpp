@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "acg/anchors.hpp"
 #include "acg/auto_complete_graph.hpp"
 #include "acg/first_alignment.hpp"
 #include "acg/node_store.hpp"
@@ -20,7 +21,7 @@ struct GraphAnchor {
 };
 
 /// The works of the Auto-Complete Graph: how it begins (graph_start.cpp), a round of linking and solving
-/// (graph_rounds.cpp), an update as a whole (auto_complete_graph.cpp).
+/// (graph_rounds.cpp), what people say (graph_words.cpp), an update as a whole (auto_complete_graph.cpp).
 class AutoCompleteGraph::Impl {
  public:
   explicit Impl(const AcgParams& p) : params(p), nodes(p) {}
@@ -30,18 +31,24 @@ class AutoCompleteGraph::Impl {
     GraphState state;
     bool aligned = false;
     double taken_way_m = 0;
+    double aligned_way_m = 0;  ///< way that was known when the plan was last laid down, or when that was last tried
     std::vector<WallState> walls;
     std::vector<double> linked_m, near_m;  ///< per wall: length with pieces on it, within its gate
     std::vector<double> sigma_m;
     BeamMemory beams;
     int updates = 0;
+    double gate_share = 1;  ///< of how far walls are looked for from where they are expected
+    bool fits = false;      ///< what was said of the plan the last time
   };
 
   Result<MergedMap> update(const PoseGraph& graph, const Progress& progress);
   Result<Ok> correct(Learnt& learnt, bool warm, const Progress& progress, SolveInput& last) const;
   bool align(Learnt& learnt) const;
-  void choose(const std::vector<PlanAlignment>& found, Learnt& learnt) const;
-  double first_metres_explained(Learnt trial) const;
+  bool choose(const std::vector<PlanAlignment>& found, Learnt& learnt) const;
+  double first_metres_explained(Learnt& trial, double way_m) const;
+  double standing(const SolveInput& input, const std::vector<bool>& use, const Learnt& learnt) const;
+  Result<Ok> question(Learnt& learnt, SolveInput& last, const Progress& progress) const;
+  Result<Ok> look_again(double gate_share, Learnt& learnt, SolveInput& last, const Progress& progress) const;
   void put_down(const PlanPlacement& placement, Learnt& learnt) const;
   Result<Ok> take_up(Learnt& learnt, const Progress& progress) const;
   Result<Ok> release_tense(Learnt& learnt, const SolveInput& input, const Progress& progress) const;
@@ -51,10 +58,13 @@ class AutoCompleteGraph::Impl {
   SolveInput link(Learnt& learnt, const std::vector<bool>& use, const std::vector<double>& gates, double sharpness,
                   const PoseRange& free_poses) const;
   SolveInput make_input(const Learnt& learnt, const PoseRange& free_poses) const;
-  std::vector<AnchorLink> anchor_links() const;
+  std::vector<PointPair> anchor_pairs() const;
+  std::vector<bool> outlying_anchors(const Learnt& learnt) const;
+  std::vector<AnchorLink> anchor_links(const Learnt& learnt) const;
+  std::vector<MergedAnchor> read_anchors(const Learnt& learnt) const;
   void judge_walls(const std::vector<WallEvidence>& evidence, Learnt& learnt) const;
   MergedMap read_out(const PoseGraph& graph, const SolveInput& input, Learnt& learnt) const;
-  PlanFit plan_fit(const SolveInput& input, const Learnt& learnt) const;
+  PlanFit plan_fit(const SolveInput& input, const MergedMap& merged, const Learnt& learnt) const;
 
   AcgParams params;
   NodeStore nodes;

@@ -33,7 +33,7 @@ SolveInput AutoCompleteGraph::Impl::make_input(const Learnt& l, const PoseRange&
   SolveInput input;
   input.plan = &*plan;
   input.edges = nodes.edges();
-  input.anchors = anchor_links();
+  input.anchors = anchor_links(l);
   for (const auto& [corner, p_map] : pins) input.pins.push_back({corner, p_map});
   for (const auto& [wall, length_m] : lengths_m) input.lengths.push_back({wall, length_m});
   input.free_poses = free_poses;
@@ -68,6 +68,7 @@ Result<Ok> AutoCompleteGraph::Impl::round(Learnt& l, const std::vector<bool>& us
                                           const PoseRange& free_poses, const Progress& progress,
                                           SolveInput* kept) const {
   std::vector<double> widths = wall_gates_m(*plan, l.walls, l.linked_m, params);
+  for (double& w : widths) w *= l.gate_share;
   SolveInput input = link(l, use, widths, sharpness, free_poses);
   for (double& w : widths) w *= 0.7 * sharpness;
   for (int k = 0; k < kReweights; ++k) {
@@ -97,6 +98,9 @@ Result<Ok> AutoCompleteGraph::Impl::release_tense(Learnt& l, const SolveInput& i
 void AutoCompleteGraph::Impl::judge_walls(const std::vector<WallEvidence>& evidence, Learnt& l) const {
   for (std::size_t w = 0; w < evidence.size(); ++w) {
     l.walls[w] = judge_wall_state(evidence[w], l.linked_m[w], l.near_m[w], params);
+  }
+  stubs_go_with_their_walls(*plan, l.walls);
+  for (std::size_t w = 0; w < evidence.size(); ++w) {
     const auto word = judgements.find(static_cast<int>(w));
     if (word == judgements.end() || word->second == WallJudgement::kNone) continue;
     l.walls[w] = word->second == WallJudgement::kGone ? WallState::kMissing : WallState::kConfirmed;

@@ -59,6 +59,12 @@ GraphChange NodeStore::take(const PoseGraph& graph, GraphState& state) {
   return change;
 }
 
+std::vector<std::array<double, 3>> NodeStore::slam_poses() const {
+  std::vector<std::array<double, 3>> out;
+  for (const Pose2& pose : slam_poses_) out.push_back(block(pose));
+  return out;
+}
+
 void NodeStore::take_edges(const PoseGraph& graph) {
   std::unordered_map<int, int> position;
   for (std::size_t i = 0; i < views_.size(); ++i) position[views_[i].id] = static_cast<int>(i);

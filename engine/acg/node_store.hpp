@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ class NodeStore {
   /// Metres driven up to each node, by all robots together.
   const std::vector<double>& way_m() const { return way_m_; }
   std::size_t size() const { return views_.size(); }
+  /// The poses as SLAM has them, without any correction.
+  std::vector<std::array<double, 3>> slam_poses() const;
 
  private:
   void take_edges(const PoseGraph& graph);

@@ -20,6 +20,8 @@ Similarity2 rigid_plan(const SolvedPlan& solved) {
 constexpr double kNothingNear =
     0.3;  ///< of a wall's length: pieces within its gate there say that it is misplaced, not missing
 
+constexpr double kStub_m = 0.5;
+
 constexpr double kKept = 0.5, kDoubtful = 0.1;  ///< robust weights
 
 double confidence_of(WallState state, const WallEvidence& evidence) {
@@ -84,6 +86,27 @@ WallState judge_wall_state(const WallEvidence& evidence, double linked_m, double
     return WallState::kMissing;
   if (hit >= 0.25 || evidence.hit_m() > params.mature_m || linked_m > params.mature_m) return WallState::kConfirmed;
   return WallState::kUnseen;
+}
+
+void stubs_go_with_their_walls(const PlanModel& plan, std::vector<WallState>& states) {
+  const auto wall_at = [&](int corner) {
+    for (std::size_t w = 0; w < plan.walls.size(); ++w)
+      if (plan.walls[w].usable && (plan.walls[w].corner_a == corner || plan.walls[w].corner_b == corner)) return w;
+    return plan.walls.size();
+  };
+  for (const PlanEdge& gap : plan.gaps) {
+    const std::size_t one = wall_at(gap.corner_a), other = wall_at(gap.corner_b);
+    if (std::max(one, other) >= plan.walls.size()) continue;
+    const auto follow = [&](std::size_t wall, std::size_t stub, int end) {
+      if (states[wall] != WallState::kMissing || plan.walls[stub].length_m >= kStub_m ||
+          plan.degree[static_cast<std::size_t>(end)] != 1 ||
+          line_angle_between(plan.walls[wall].heading_rad, plan.walls[stub].heading_rad) > radians(10))
+        return;
+      states[stub] = WallState::kMissing;
+    };
+    follow(one, other, gap.corner_b);
+    follow(other, one, gap.corner_a);
+  }
 }
 
 void read_out_plan(const SolvedPlan& solved, const AcgParams& params, MergedMap& out) {

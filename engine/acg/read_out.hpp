@@ -27,6 +27,10 @@ struct SolvedPlan {
 /// @param linked_m  length on which pieces lie on it; near_m: the same for pieces anywhere within its gate
 WallState judge_wall_state(const WallEvidence& evidence, double linked_m, double near_m, const AcgParams& params);
 
+/// Where a wall with a door is missing, the short rest of it beyond the door (under 0.5 m) is missing too: echoes so
+/// near the wall that it was drawn to meet cannot tell. Changes `states`.
+void stubs_go_with_their_walls(const PlanModel& plan, std::vector<WallState>& states);
+
 /// Walls, corners, links and the deformation of a solved plan, into `out`.
 void read_out_plan(const SolvedPlan& solved, const AcgParams& params, MergedMap& out);
 void read_out_new_walls(const std::vector<NewWall>& walls, MergedMap& out);

@@ -23,7 +23,6 @@
 namespace smokemap {
 namespace {
 
-constexpr double kSigmaAnchor_m = 0.05;
 constexpr double kEdgeWidth = 3.0;  ///< sigmas from which SLAM is thought to have slipped
 constexpr double kLinesKnow = 2.5;  ///< times less sure than a wall that no line knows
 constexpr double kSigmaPin_m = 0.003;
@@ -168,8 +167,8 @@ class ProblemBuilder {
   /// What people say is never weighted down.
   void add_words(ceres::Problem& problem) {
     for (const AnchorLink& a : in_.anchors)
-      problem.AddResidualBlock(AnchorCost::Create(a.shares, a.p_map, kSigmaAnchor_m), nullptr, corner(a.corners[0]),
-                               corner(a.corners[1]), corner(a.corners[2]));
+      problem.AddResidualBlock(AnchorCost::Create(a.shares, a.p_map, AnchorCost::Finger{}), nullptr,
+                               corner(a.corners[0]), corner(a.corners[1]), corner(a.corners[2]));
     for (const CornerPin& p : in_.pins)
       problem.AddResidualBlock(PinCost::Create(p.p_map, kSigmaPin_m), nullptr, corner(p.corner));
     for (const WallLength& l : in_.lengths) {

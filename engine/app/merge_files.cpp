@@ -111,6 +111,9 @@ std::string merged_to_json(const MergedMap& merged, const LayoutMap& layout, con
                              {"map", known ? to_json(merged.layout_to_map(p_layout)) : json()},
                              {"sigma_m", known ? json(rounded(merged.layout_to_map.sigma_m(p_layout))) : json()}});
   }
+  out["pairs"] = json::array();
+  for (const MergedAnchor& a : merged.anchors)
+    out["pairs"].push_back({{"id", a.id}, {"residual_m", rounded(a.residual_m)}, {"outlier", a.outlier}});
   out["fit"] = {{"score", rounded(merged.fit.score)}, {"verdict", merged.fit.verdict}};
   return out.dump();
 }

@@ -40,9 +40,16 @@ struct MapLink {
   LinkState state = LinkState::kKept;
 };
 
+/// What became of a pair that a person vouched for.
+struct MergedAnchor {
+  std::string id;
+  double residual_m = 0;  ///< from where the person says the place is to where the merged map has it
+  bool outlier = false;   ///< contradicts the other pairs; it was left out
+};
+
 /// Does this plan fit this building at all?
 struct PlanFit {
-  double score = 0;                 ///< 0..1: share of the sensed wall length that the plan explains
+  double score = 0;                 ///< 0..1: how far plan and sensors explain each other
   std::string verdict = "unknown";  ///< "fits", "doubtful", "does not fit", "unknown"
 };
 
@@ -52,8 +59,9 @@ struct MergedMap {
   std::vector<MergedWall> walls;
   std::vector<MergedCorner> corners;  ///< same order as LayoutMap::corners
   std::vector<MapLink> links;
-  Deformation layout_to_map;  ///< layout (metres) -> map; identity without a plan
-  Trajectory trajectory;      ///< corrected, one per pose node
+  std::vector<MergedAnchor> anchors;  ///< by id
+  Deformation layout_to_map;          ///< layout (metres) -> map; identity without a plan
+  Trajectory trajectory;              ///< corrected, one per pose node
   PlanFit fit;
 };
 

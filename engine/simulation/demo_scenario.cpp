@@ -93,20 +93,26 @@ Result<Ok> DemoParams::validate() const {
 
 Result<DemoScenario> make_demo(std::uint64_t seed, const DemoParams& params) {
   if (const auto valid = params.validate(); !valid) return valid.error();
-  DemoScenario demo;
-  demo.seed = seed;
   auto random = random_stream(seed, kBuildingStream);
   auto building = random_building(params.building, random);
   if (!building) return building.error();
-  demo.building = std::move(*building);
+  return make_demo_in(std::move(*building), std::nullopt, seed, params);
+}
 
-  random = random_stream(seed, kPlanStream);
+Result<DemoScenario> make_demo_in(FloorPlan building, const std::optional<Pose2>& T_world_start, std::uint64_t seed,
+                                  const DemoParams& params) {
+  if (const auto valid = params.validate(); !valid) return valid.error();
+  DemoScenario demo;
+  demo.seed = seed;
+  demo.building = std::move(building);
+
+  auto random = random_stream(seed, kPlanStream);
   auto plan = distort(demo.building, params.distortion, random);
   if (!plan) return plan.error();
   demo.plan = std::move(*plan);
 
   demo.world.walls = build_world(demo.building);
-  demo.T_world_start = place_robot(demo.building);
+  demo.T_world_start = T_world_start.value_or(place_robot(demo.building));
   const Point2 start = demo.T_world_start.translation();
   const std::vector<Way> ways = ways_to_rooms(demo.building, demo.world.walls, start);
   if (ways.size() < 2) return fail(Errc::kDegenerate, "no room of this building can be reached");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,11 @@ struct DemoParams {
 
 /// The same seed gives the same demo, byte for byte. Takes about 0.15 s. kInvalidArgument for bad parameters.
 Result<DemoScenario> make_demo(std::uint64_t seed = kDemoSeed, const DemoParams& params = {});
+
+/// The same around a building from elsewhere (its first room is where the robot starts, unless a start is given);
+/// `params.building` is not used. kDegenerate as well if hardly a room can be reached.
+Result<DemoScenario> make_demo_in(FloorPlan building, const std::optional<Pose2>& T_world_start, std::uint64_t seed,
+                                  const DemoParams& params = {});
 
 /// How a pose in the true building looks on the plan, which is wrong: what a person who knows both would point at.
 StartHint point_on_plan(const DemoScenario& demo, const Pose2& T_world_robot);

@@ -113,6 +113,7 @@ class Mission {
     const Snapshot snapshot = core_.snapshot(0);
     MissionResult r;
     r.time_s = time_s;
+    r.merged = snapshot.merged;
     r.corners = static_cast<int>(before_.size());
     r.before_median_m = median(before_);
     r.after_median_m = median(corner_errors(false));

@@ -31,6 +31,7 @@ struct MissionResult {
   int seen = 0, corners = 0;
   int bumps = 0;
   double pose_error_m = 0;  ///< of the robot on the map, at the end
+  std::shared_ptr<const MergedMap> merged;
 };
 
 /// The demo without threads, network or browser, in simulated time: the robot explores, then a goal on the plan in a

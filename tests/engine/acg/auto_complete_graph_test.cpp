@@ -246,6 +246,44 @@ TEST(AutoCompleteGraph, AlignsByTwoPairsWithoutAStart) {
   EXPECT_LT((merged->corners[0].p_map - problem.true_corners[0]).norm(), 0.15);
 }
 
+TEST(AutoCompleteGraph, BelievesAPersonsPairMoreThanSensorsAndShowsTheResidual) {
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
+  AutoCompleteGraph acg;
+  ASSERT_THAT(acg.set_plan(problem.plan, problem.start), IsOk());
+  const MergedMap before = *acg.update(problem.graph);
+  std::size_t seen = 0;
+  while (!before.corners[seen].seen) ++seen;
+  const Point2 said = before.corners[seen].p_map + Point2(0.5, 0.33);
+  acg.add_anchor("said", problem.plan.corners[seen].p_px, said);
+  const MergedMap after = *acg.update(problem.graph);
+  ASSERT_EQ(after.anchors.size(), 1u);
+  EXPECT_EQ(after.anchors[0].id, "said");
+  EXPECT_FALSE(after.anchors[0].outlier);
+  EXPECT_LT((after.corners[seen].p_map - said).norm(), 0.10);
+  EXPECT_LT(after.anchors[0].residual_m, 0.10);
+  acg.remove_anchor("said");
+  const MergedMap free = *acg.update(problem.graph);
+  EXPECT_TRUE(free.anchors.empty());
+  EXPECT_LT((free.corners[seen].p_map - before.corners[seen].p_map).norm(), 0.05);
+}
+
+TEST(AutoCompleteGraph, LeavesOutAPairThatContradictsTheOthersAndFlagsIt) {
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
+  AutoCompleteGraph acg;
+  ASSERT_THAT(acg.set_plan(problem.plan), IsOk());
+  const std::size_t last = problem.plan.corners.size() - 1;
+  for (const std::size_t c : {std::size_t{0}, last / 3, 2 * last / 3, last})
+    acg.add_anchor("right " + std::to_string(c), problem.plan.corners[c].p_px, problem.true_corners[c]);
+  acg.add_anchor("wrong", problem.plan.corners[last / 2].p_px, problem.true_corners[last / 2] + Point2(-9, 14));
+  const auto merged = acg.update(problem.graph);
+  ASSERT_THAT(merged, IsOk());
+  for (const MergedAnchor& a : merged->anchors) {
+    EXPECT_EQ(a.outlier, a.id == "wrong") << a.id;
+    EXPECT_EQ(a.residual_m > 1, a.id == "wrong") << a.id;
+  }
+  EXPECT_LT(median(corner_errors(problem, *merged, true)), 0.15);
+}
+
 TEST(AutoCompleteGraph, WithoutAPlanHandsOnTheTrajectoryAndSensedWalls) {
   MergeProblemParams params;
   params.max_stops = 3;

@@ -118,6 +118,59 @@ TEST(Localizer, SaysThatItIsLostInTheWrongBuilding) {
   EXPECT_TRUE(drive(flat, way, std::move(localizer), 7).estimate().lost);
 }
 
+TEST(Localizer, SaysThatItIsLostWhereTwoRoomsLookAlike) {
+  std::vector<WorldSegment> walls;
+  std::vector<LocalizerWall> drawn;
+  for (const double x : {0.0, 20.0})
+    for (const Segment2& s : {Segment2{{x, 0}, {x + 5, 0}}, Segment2{{x + 5, 0}, {x + 5, 3}},
+                              Segment2{{x + 5, 3}, {x, 3}}, Segment2{{x, 3}, {x, 0}}}) {
+      walls.push_back({s});
+      drawn.push_back({s, 0});
+    }
+  const SegmentWorld world(walls);
+  auto random = random_stream(21, 1);
+  Localizer localizer({}, 4);
+  localizer.set_walls(drawn);
+  localizer.start_anywhere();
+  Pose2 pose(1.5, 1.2, 0.1);
+  int claimed = 0;
+  for (int i = 0; i < 12; ++i) {
+    localizer.update(i == 0 ? Pose2() : Pose2(0.15, 0, 0.02), scan_from(world, pose, random));
+    pose = pose * Pose2(0.15, 0, 0.02);
+    claimed += !localizer.estimate().lost;
+  }
+  EXPECT_LE(claimed, 3);
+}
+
+TEST(Localizer, StandsWhereAPersonSaysAndForgetsWhatItThoughtBefore) {
+  const Flat flat;
+  Localizer localizer({}, 5);
+  localizer.set_walls(flat.drawn);
+  localizer.start_anywhere();
+  const Pose2 said(8.5, 2, 1.2);
+  localizer.start_at(said, 0.1, 0.03);
+  EXPECT_THAT(localizer.estimate().T_map_robot, IsNear(said, 0.05, 0.02));
+  EXPECT_FALSE(localizer.estimate().lost);
+  auto random = random_stream(22, 1);
+  for (int i = 0; i < 5; ++i) localizer.update(Pose2(), scan_from(flat.world, said, random));
+  EXPECT_THAT(localizer.estimate().T_map_robot, IsNear(said, 0.1, 0.04));
+}
+
+TEST(Localizer, NoticesThatItWasCarriedAwayAndFindsItsWayBack) {
+  const Flat flat;
+  const auto way = some_way();
+  Localizer localizer({}, 6);
+  localizer.set_walls(flat.drawn);
+  localizer.start_at(Pose2(8.5, 6, 0.5), 0.2, 0.1);  // the robot is in another room
+  auto random = random_stream(23, 1);
+  bool noticed = false;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    localizer.update(i == 0 ? Pose2() : way[i - 1].inverse() * way[i], scan_from(flat.world, way[i], random));
+    noticed = noticed || localizer.estimate().lost;
+  }
+  EXPECT_TRUE(noticed);
+}
+
 TEST(Localizer, AnswersTheSameForTheSameSeed) {
   const Flat flat;
   const auto way = some_way();

@@ -1,3 +1,4 @@
+#include "acg/residuals/anchor_cost.hpp"
 #include "acg/residuals/corner_cost.hpp"
 #include "acg/residuals/pin_cost.hpp"
 #include "acg/residuals/wall_length_cost.hpp"
@@ -21,6 +22,28 @@ TEST(PinCost, IsZeroAtThePinAndInStandardDeviationsBesideIt) {
   EXPECT_NEAR(r[0], 2, 1e-9);
   EXPECT_NEAR(r[1], -3, 1e-9);
   test::expect_jacobian_is_numeric(*cost, {{1, 2}});
+}
+
+TEST(AnchorCost, OnlyLeansWithinAFingersBreadthAndWinsBeyondIt) {
+  auto random = random_stream(4, 5);
+  const AnchorCost::Finger finger{0.05, 0.05, 0.001};
+  for (int i = 0; i < 100; ++i) {
+    const Point2 a = some_place(random), b = some_place(random), c = some_place(random);
+    const Eigen::Vector3d shares(0.2, 0.5, 0.3);
+    const Point2 here = 0.2 * a + 0.5 * b + 0.3 * c;
+    const double where = uniform(random, -kPi, kPi);
+    const Point2 way(std::cos(where), std::sin(where));
+    const auto at = [&](double off) {
+      const OwnedCost cost(AnchorCost::Create(shares, here + off * way, finger));
+      test::expect_jacobian_is_numeric(*cost, {block_of(a), block_of(b), block_of(c)}, 1e-3);
+      return residuals_of(*cost, {block_of(a), block_of(b), block_of(c)});
+    };
+    for (const double r : at(0)) EXPECT_NEAR(r, 0, 1e-6);
+    const auto inside = at(0.04), outside = at(0.25);
+    EXPECT_NEAR(std::hypot(inside[0], inside[1]), 0.8, 1e-6);
+    EXPECT_EQ(inside[2], 0);
+    EXPECT_NEAR(outside[2], 200, 1e-3);
+  }
 }
 
 TEST(WallLengthCost, IgnoresWhereTheWallLiesAndHowItIsTurned) {

@@ -1,9 +1,9 @@
-#include "acg/residuals/anchor_cost.hpp"
 #include "acg/residuals/drawn_line_cost.hpp"
 #include "acg/residuals/neighbour_stretch_cost.hpp"
 #include "acg/residuals/prior_value_cost.hpp"
 #include "acg/residuals/strip_stretch_cost.hpp"
 #include "core/random.hpp"
+#include "geometry/pose2.hpp"
 #include "tests/engine/acg/residuals/residual_check.hpp"
 
 namespace smokemap {
@@ -45,16 +45,6 @@ TEST(NeighbourStretchCost, IsZeroWhenTheStretchFadesAsItShould) {
   EXPECT_NEAR(residuals_of(*cost, {{0}, {2.2}, {2.2 + 3 * 1.06}, {0}})[0], 0, 1e-9);
   EXPECT_NEAR(residuals_of(*cost, {{0}, {2.2}, {2.2 + 3 * 1.16}, {0}})[0], 2, 1e-9);
   test::expect_jacobian_is_numeric(*cost, {{0}, {2.1}, {5.4}, {0.05}});
-}
-
-TEST(AnchorCost, PullsTheMixtureOfThreeCornersToThePlace) {
-  const OwnedCost cost(AnchorCost::Create({0.5, 0.25, 0.25}, {2, 1}, 0.05));
-  auto r = residuals_of(*cost, {{0, 0}, {4, 0}, {4, 4}});
-  EXPECT_NEAR(r[0], 0, 1e-9);
-  EXPECT_NEAR(r[1], 0, 1e-9);
-  r = residuals_of(*cost, {{0.2, 0}, {4, 0}, {4, 4}});
-  EXPECT_NEAR(r[0], 2, 1e-9);
-  test::expect_jacobian_is_numeric(*cost, {{0, 0}, {4, 0}, {4, 4}});
 }
 
 TEST(PriorValueCost, IsTheDistanceInStandardDeviations) {

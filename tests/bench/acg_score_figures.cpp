@@ -1,0 +1,178 @@
+#include "tests/bench/acg_score_figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "acg/scan_pieces.hpp"
+#include "geometry/angle.hpp"
+
+namespace smokemap::bench {
+namespace {
+
+constexpr double kJudged_m = 1.5;     ///< walls shorter than this are not judged missing or new
+constexpr double kJudgedReach_m = 8;  ///< corners farther from the robot need not be linked
+
+double share_of(double part, double all) { return all > 0 ? part / all : 1; }
+
+bool well_seen(const DemoScenario& demo, const RecordedRun& run, std::size_t corner, double radius_m, int least) {
+  int echoes = 0;
+  for (std::size_t w = 0; w < demo.truth.layout.walls.size(); ++w)
+    if (demo.truth.wall_source[w] >= 0)
+      echoes += run.witness.echoes_near(static_cast<int>(w), demo.truth.corner_world[corner], radius_m);
+  return echoes >= least;
+}
+
+bool of_a_true_wall(const DemoScenario& demo, std::size_t corner) {
+  for (std::size_t w = 0; w < demo.truth.layout.walls.size(); ++w) {
+    const LayoutWall& wall = demo.truth.layout.walls[w];
+    const bool touches = wall.corner_a == static_cast<int>(corner) || wall.corner_b == static_cast<int>(corner);
+    if (touches && demo.truth.wall_source[w] >= 0) return true;
+  }
+  return false;
+}
+
+void score_corners(const AcgTruth& truth, const MergedMap& merged, AcgScore& out) {
+  const DemoScenario& demo = truth.demo;
+  const RecordedRun& run = truth.run;
+  const PlanStart& start = truth.start;
+  std::vector<double> before, after, never_before, never;
+  double within = 0, never_within = 0;
+  const PixelFrame frame = demo.truth.layout.frame();
+  for (std::size_t i = 0; i < merged.corners.size(); ++i) {
+    if (!of_a_true_wall(demo, i)) continue;
+    const Point2 p_true = demo.to_map(demo.truth.corner_world[i]);
+    const Point2 rigid = start.T_layout_robot.inverse() * frame.to_metres(demo.truth.layout.corners[i].p_px);
+    const double error = (merged.corners[i].p_map - p_true).norm();
+    const bool inside = error <= 2 * merged.corners[i].sigma_m;
+    if (well_seen(demo, run, i, 0.6, 16)) {
+      before.push_back((rigid - p_true).norm());
+      after.push_back(error);
+      within += inside;
+    } else if (!well_seen(demo, run, i, 1.0, 1)) {
+      never_before.push_back((rigid - p_true).norm());
+      never.push_back(error);
+      never_within += inside;
+    }
+  }
+  out.before_m = median_of(before), out.seen_m = median_of(after);
+  out.never_before_m = median_of(never_before), out.never_m = median_of(never);
+  out.never = static_cast<int>(never.size());
+  out.within_seen = share_of(within, static_cast<double>(after.size()));
+  out.within_never = share_of(never_within, static_cast<double>(never.size()));
+}
+
+/// A link is right when the corner truly lies behind the seen crossing: within a wall's thickness and some. Found are
+/// those of the crossings seen, by the nodes that are asked, that truly are a corner of the plan.
+void score_links(const AcgTruth& truth, const MergedMap& merged, AcgScore& out) {
+  const DemoScenario& demo = truth.demo;
+  const AcgParams params;
+  std::vector<Point2> corners;
+  for (std::size_t c = 0; c < merged.corners.size(); ++c)
+    if (demo.truth.layout.corners[c].degree >= 2 && of_a_true_wall(demo, c))
+      corners.push_back(demo.to_map(demo.truth.corner_world[c]));
+  double kept = 0, right = 0, seen = 0, found = 0;
+  std::vector<Point2> right_places;
+  for (const MapLink& link : merged.links) {
+    if (link.state != LinkState::kKept) continue;
+    const auto c = static_cast<std::size_t>(link.layout_corner);
+    const bool good = of_a_true_wall(demo, c) && (link.p_map - demo.to_map(demo.truth.corner_world[c])).norm() < 0.40;
+    ++kept, right += good;
+    if (good) right_places.push_back(link.p_map);
+  }
+  Pose2 asked;
+  for (std::size_t i = 0; i < truth.graph.nodes.size(); ++i) {
+    const Pose2 pose = merged.trajectory[i].T_map_robot, step = asked.inverse() * pose;
+    if (i > 0 && step.translation().norm() < params.node_spacing_m && std::abs(step.heading()) < 0.35) continue;
+    asked = pose;
+    for (const Corner& c : view_of(truth.graph.nodes[i], params).corners) {
+      const Point2 p = pose * c.position;
+      if (c.position.norm() > kJudgedReach_m ||
+          std::none_of(corners.begin(), corners.end(), [&](const Point2& q) { return (q - p).norm() < 0.25; }))
+        continue;
+      ++seen;
+      found +=
+          std::any_of(right_places.begin(), right_places.end(), [&](const Point2& q) { return (q - p).norm() < 1e-6; });
+    }
+  }
+  out.links_right = share_of(right, kept), out.links_found = share_of(found, seen);
+}
+
+double beside_m(const Segment2& s, const std::vector<Segment2>& others) {
+  double near = 0;
+  for (double t = 0.05; t < s.length(); t += 0.1) {
+    const Point2 p = s.a + t * s.direction();
+    near +=
+        std::any_of(others.begin(), others.end(), [&](const Segment2& o) { return distance(o, p) < 0.3; }) ? 0.1 : 0;
+  }
+  return near;
+}
+
+void score_walls(const DemoScenario& demo, const RecordedRun& run, const MergedMap& merged, AcgScore& out) {
+  double called = 0, right = 0, phantoms = 0, found = 0;
+  std::vector<Segment2> new_walls, unplanned;
+  for (const MergedWall& w : merged.walls) {
+    if (w.state == WallState::kNew) new_walls.push_back(w.segment_map);
+    if (!w.layout_wall) continue;
+    if (demo.truth.layout.wall_m(*w.layout_wall).length() < kJudged_m) continue;
+    const bool phantom = demo.truth.wall_source[static_cast<std::size_t>(*w.layout_wall)] < 0;
+    const bool missing = w.state == WallState::kMissing;
+    called += missing, right += missing && phantom;
+    if (!phantom || run.witness.crossed(*w.layout_wall, 8) < 0.5) continue;
+    ++phantoms, found += missing;
+  }
+  out.missing_right = share_of(right, called), out.missing_found = share_of(found, phantoms);
+  double seen = 0, covered = 0, drawn = 0, true_new = 0;
+  const int first = static_cast<int>(demo.truth.layout.walls.size());
+  for (std::size_t k = 0; k < run.unplanned.size(); ++k)
+    unplanned.push_back({demo.to_map(run.unplanned[k].a), demo.to_map(run.unplanned[k].b)});
+  for (std::size_t k = 0; k < run.unplanned.size(); ++k)
+    for (const Segment2& part : run.witness.seen_parts(first + static_cast<int>(k), 8)) {
+      if (part.length() < kJudged_m) continue;
+      seen += part.length();
+      covered += beside_m({demo.to_map(part.a), demo.to_map(part.b)}, new_walls);
+    }
+  for (const Segment2& s : new_walls)
+    if (s.length() >= kJudged_m) drawn += s.length(), true_new += beside_m(s, unplanned);
+  out.new_right = share_of(true_new, drawn), out.new_found = share_of(covered, seen);
+}
+
+void score_poses(const PoseGraph& graph, const RecordedRun& run, const MergedMap& merged, AcgScore& out) {
+  double square = 0, turn = 0, before = 0;
+  const Pose2 T_first = graph.nodes.front().T_odom_robot.inverse();
+  std::size_t k = 0, count = 0;
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+    while (k + 1 < run.truth.size() && run.truth[k].stamp < graph.nodes[i].stamp) ++k;
+    const Pose2 error = run.truth[k].T_map_robot.inverse() * merged.trajectory[i].T_map_robot;
+    before +=
+        (run.truth[k].T_map_robot.translation() - (T_first * graph.nodes[i].T_odom_robot).translation()).squaredNorm();
+    square += error.translation().squaredNorm(), turn += error.heading() * error.heading(), ++count;
+  }
+  out.pose_m = std::sqrt(share_of(square, static_cast<double>(count)));
+  out.pose_before_m = std::sqrt(share_of(before, static_cast<double>(count)));
+  out.yaw_rad = std::sqrt(share_of(turn, static_cast<double>(count)));
+}
+
+}  // namespace
+
+void score_merged(const AcgTruth& truth, const MergedMap& merged, AcgScore& out) {
+  score_poses(truth.graph, truth.run, merged, out);
+  score_corners(truth, merged, out);
+  score_links(truth, merged, out);
+  score_walls(truth.demo, truth.run, merged, out);
+  out.fit = merged.fit.score;
+  out.success = out.pose_m < 0.3 && out.seen_m < 0.15;
+}
+
+double turned_deg(const DemoScenario& demo, const MergedMap& merged) {
+  double worst = 0;
+  for (const MergedWall& w : merged.walls) {
+    if (!w.layout_wall || w.segment_map.length() < 1.5) continue;
+    const int source = demo.truth.wall_source[static_cast<std::size_t>(*w.layout_wall)];
+    if (source < 0) continue;
+    const double truth = demo.building.wall_line(source).heading() - demo.T_world_start.heading();
+    worst = std::max(worst, line_angle_between(w.segment_map.heading(), truth));
+  }
+  return worst * 180 / kPi;
+}
+
+}  // namespace smokemap::bench
