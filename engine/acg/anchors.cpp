@@ -8,9 +8,9 @@
 namespace smokemap {
 namespace {
 
-constexpr double kFinger_m = 0.5;  ///< how far people point beside the same place without meaning another
-constexpr double kStretch = 0.2;   ///< two sigma of a plan's local stretch, over the distance from a known pair
-constexpr double kMaxScale = 1.8;  ///< of a pair of pairs against the plan's own scale; more is no plan to scale
+constexpr double kFinger_m = 0.5;      ///< how far people point beside the same place without meaning another
+constexpr double kLocalStretch = 0.2;  ///< two sigma of a plan's local stretch, over the distance from a known pair
+constexpr double kMaxScale = 1.8;      ///< of a pair of pairs against the plan's own scale; more is no plan to scale
 constexpr double kMinApart_m = 1.0;
 constexpr std::size_t kEnough = 3;  ///< pairs that agree
 
@@ -30,7 +30,7 @@ std::optional<Consensus> consensus(const std::vector<PointPair>& pairs, std::siz
   for (const PointPair& p : pairs) {
     const double away = std::min((p.p_a - pairs[i].p_a).norm(), (p.p_a - pairs[j].p_a).norm());
     const double error = (*through * p.p_b - p.p_a).norm();
-    out.agrees.push_back(error < kFinger_m + kStretch * away);
+    out.agrees.push_back(error < kFinger_m + kLocalStretch * away);
     out.count += out.agrees.back();
     out.error_m += out.agrees.back() ? error : 0;
   }
