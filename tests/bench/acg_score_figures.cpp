@@ -12,7 +12,7 @@ namespace {
 constexpr double kJudged_m = 1.5;     ///< walls shorter than this are not judged missing or new
 constexpr double kJudgedReach_m = 8;  ///< corners farther from the robot need not be linked
 
-double share_of(double part, double all) { return all > 0 ? part / all : 1; }
+double share_of(double part, double all) { return all > 0 ? std::min(1.0, part / all) : 1; }
 
 bool well_seen(const DemoScenario& demo, const RecordedRun& run, std::size_t corner, double radius_m, int least) {
   int echoes = 0;
