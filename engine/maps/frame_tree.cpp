@@ -15,7 +15,7 @@ bool FrameTree::set(const std::string& parent, const std::string& child, const E
                     const Eigen::Quaterniond& rotation) {
   const double norm = rotation.norm();
   if (!translation.allFinite() || !std::isfinite(norm) || std::abs(norm - 1) > 0.01) return false;
-  if (frame_name(parent) == frame_name(child) || child.empty()) return false;
+  if (frame_name(parent) == frame_name(child) || frame_name(child).empty() || frame_name(parent).empty()) return false;
   Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();
   T_parent_child.linear() = rotation.normalized().toRotationMatrix();
   T_parent_child.translation() = translation;

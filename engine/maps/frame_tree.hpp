@@ -20,7 +20,7 @@ struct SensorMount {
 class FrameTree {
  public:
   /// Adds or replaces the pose of `child` in `parent`. Ignored (false) unless finite with a unit-length rotation
-  /// (within 1 %).
+  /// (within 1 %), and for frames without a name or that are their own parent.
   bool set(const std::string& parent, const std::string& child, const Eigen::Vector3d& translation,
            const Eigen::Quaterniond& rotation);
 

@@ -38,11 +38,12 @@ struct LaserScan {
 
 BeamKind classify(float range_m, const LaserScan& scan, const BeamConvention& convention);
 
-/// Rejects, with the reason, what no later stage should see: no beams, more than 20 000, zero or non-finite increment,
-/// non-finite pose or limits.
+/// Rejects, with the reason, what no later stage should see: no beams, more than 20 000, an increment that is zero, not
+/// finite or goes round more than twice (degrees), a pose that is not finite, limits without a range between them.
 Result<Ok> check(const LaserScan& scan);
 
-/// Number of beams that look in different directions: a 361st beam of a full turn repeats the first.
+/// Number of beams that look in different directions: a 361st beam of a full turn repeats the first, all later ones
+/// too.
 std::size_t distinct_beams(const LaserScan& scan);
 
 /// Hits in the laser frame, in beam order.

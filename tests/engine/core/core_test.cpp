@@ -1,6 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
 #include <set>
+#include <vector>
 
 #include "core/check.hpp"
 #include "core/progress.hpp"
@@ -148,6 +153,98 @@ TEST(Random, NumbersAreTheSameOnEveryMachine) {
   EXPECT_EQ(uniform01(again), first);
   EXPECT_EQ(normal(again, 1), second);
   EXPECT_NE(random_stream(42, 1, 2, 4)(), random_stream(42, 1, 2, 3)());
+}
+
+TEST(Random, IndexIsEvenEvenWhereTheGeneratorsRangeIsNoMultipleOfTheCount) {
+  // Of 3 * 2^62 values a plain remainder would draw the lowest quarter of 2^64 twice as often.
+  constexpr std::uint64_t kThird = std::uint64_t{1} << 62;
+  std::mt19937_64 random(8);
+  int counts[3] = {};
+  for (int i = 0; i < 30'000; ++i) ++counts[uniform_index(random, 3 * kThird) / kThird];
+  for (const int count : counts) EXPECT_NEAR(count, 10'000, 400);
+  EXPECT_LE(uniform_index(random, std::numeric_limits<std::uint64_t>::max()),
+            std::numeric_limits<std::uint64_t>::max() - 1);
+}
+
+TEST(RandomDeathTest, AnIndexIntoNothingIsABrokenPromise) {
+  std::mt19937_64 random(1);
+  EXPECT_DEATH((void)uniform_index(random, 0), "broken promise: count > 0");
+}
+
+TEST(Random, NormalAndExponentialHaveTheTailsOfTheirNames) {
+  std::mt19937_64 random(21);
+  constexpr int kDraws = 100'000;
+  int beyond_two_sigma = 0, above = 0, beyond_mean = 0, beyond_two = 0;
+  for (int i = 0; i < kDraws; ++i) {
+    const double x = normal(random, 3.0), e = exponential(random);
+    ASSERT_TRUE(std::isfinite(x) && std::isfinite(e));
+    beyond_two_sigma += std::abs(x) > 6, above += x > 0, beyond_mean += e > 1, beyond_two += e > 2;
+  }
+  EXPECT_NEAR(static_cast<double>(beyond_two_sigma) / kDraws, 0.0455, 0.003);
+  EXPECT_NEAR(static_cast<double>(above) / kDraws, 0.5, 0.006);
+  EXPECT_NEAR(static_cast<double>(beyond_mean) / kDraws, std::exp(-1.0), 0.006);
+  EXPECT_NEAR(static_cast<double>(beyond_two) / beyond_mean, std::exp(-1.0), 0.01) << "it has no memory";
+  EXPECT_EQ(normal(random, 0), 0);
+}
+
+TEST(Random, NeighbouringStreamsHaveNothingToDoWithEachOther) {
+  constexpr int kStreams = 20'000;
+  double products = 0;
+  auto first = random_stream(1, 0);
+  double before = uniform01(first) - 0.5;
+  for (std::uint64_t i = 1; i < kStreams; ++i) {
+    auto stream = random_stream(1, i);
+    const double here = uniform01(stream) - 0.5;
+    products += here * before;
+    before = here;
+  }
+  EXPECT_NEAR(12 * products / kStreams, 0, 0.03) << "correlation of the first draws of neighbours";
+  EXPECT_NE(random_stream(1, 2)(), random_stream(2, 1)()) << "seed and robot are not interchangeable";
+  EXPECT_NE(random_stream(1, 2, 3)(), random_stream(1, 3, 2)());
+}
+
+/// Recorded seeds name buildings, plans and runs: whoever changes these numbers changes all of them.
+TEST(Random, DrawsTheNumbersThatItAlwaysDrew) {
+  std::mt19937_64 standard;  // the 10 000th number of the default seed is given by the C++ standard
+  standard.discard(9999);
+  EXPECT_EQ(standard(), 9981545732273789042u);
+  auto random = random_stream(42, 1, 2, 3);
+  EXPECT_EQ(random(), 3157671804199408387u);
+  EXPECT_DOUBLE_EQ(uniform(random, -1, 1), -0.86649120385927625);
+  EXPECT_EQ(uniform_index(random, 1000), 887u);
+}
+
+TEST(Result, CarriesWhatCanOnlyBeMoved) {
+  const auto make = [](bool good) -> Result<std::unique_ptr<int>> {
+    if (!good) return fail(Errc::kNotFound, "none");
+    return std::make_unique<int>(5);
+  };
+  auto made = make(true);
+  ASSERT_THAT(made, test::IsOk());
+  const std::unique_ptr<int> taken = std::move(made).value();
+  EXPECT_EQ(*taken, 5);
+  EXPECT_THAT(make(false), test::Fails(Errc::kNotFound));
+}
+
+TEST(Result, KeepsItsReasonWhenCopiedAndAssigned) {
+  Result<std::vector<int>> result = fail(Errc::kTooLarge, "nine");
+  Result<std::vector<int>> copy = result;
+  result = std::vector<int>{1, 2};
+  EXPECT_THAT(result, test::IsOk());
+  EXPECT_EQ(copy.error().message, "nine");
+  copy = result;
+  (*copy).push_back(3);
+  EXPECT_EQ(result->size(), 2u) << "a copy is a copy";
+}
+
+TEST(ParamCheck, SpeaksOfTheFirstFieldWhateverItsKind) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  const auto said = [](const ParamCheck& check) { return check.result().error().message; };
+  EXPECT_EQ(said(ParamCheck("P").require("a", false, "must be odd").in_range("b", 5, 0, 1)), "P.a must be odd");
+  EXPECT_EQ(said(ParamCheck("P").positive("a", kInf).require("b", false, "x")), "P.a is inf, must be positive");
+  EXPECT_EQ(said(ParamCheck("P").in_range("a", -kInf, -1, 1).positive("b", 0)), "P.a is -inf, must be within [-1, 1]");
+  EXPECT_THAT(ParamCheck("P").in_range("a", 1, 2, 0).result(), test::Fails(Errc::kInvalidArgument))
+      << "limits that depend on a field which is wrong itself leave no value";
 }
 
 }  // namespace

@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/random.hpp"
 #include "geometry/angle.hpp"
@@ -64,6 +68,78 @@ TEST(RadarImageFaults, AreRefused) {
   EXPECT_THAT(spoilt(1, 4, std::numeric_limits<float>::infinity()), test::Fails(Errc::kCorrupt));
   EXPECT_THAT(from_radar_rows(std::vector<float>(200 * 100, 1.f), 200, 100), test::Fails(Errc::kCorrupt))
       << "a depth picture";
+}
+
+TEST(RadarImageFaults, AreRefusedInEveryNumberOfEveryHead) {
+  const RadarSweep sent = random_sweep(4);
+  const auto width = static_cast<std::size_t>(sent.bins + kRadarRowHeader);
+  const std::vector<float> sound = to_radar_rows(sent);
+  for (const float bad :
+       {std::nanf(""), std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()})
+    for (std::size_t row = 0; row < static_cast<std::size_t>(sent.azimuths); row += 7)
+      for (std::size_t column = 0; column < 4; ++column) {
+        std::vector<float> rows = sound;
+        rows[row * width + column] = bad;
+        EXPECT_THAT(from_radar_rows(rows, sent.azimuths, static_cast<int>(width)), test::Fails(Errc::kCorrupt))
+            << row << " " << column << " = " << bad;
+      }
+}
+
+TEST(RadarImageFaults, SizesBeyondAnyRadarAreRefusedBeforeTheirBytesAreLookedAt) {
+  const std::vector<float> few(100, 1.f);
+  for (const auto& [height, width] : {std::pair(kMostRadarAzimuths + 1, 10), std::pair(2, kMostRadarBins + 5),
+                                      std::pair(1, 100), std::pair(0, 0), std::pair(2, 4), std::pair(2, -50),
+                                      std::pair(std::numeric_limits<int>::max(), std::numeric_limits<int>::max())})
+    EXPECT_THAT(from_radar_rows(few, height, width), test::Fails(Errc::kCorrupt)) << height << " x " << width;
+}
+
+TEST(RadarImage, IsTheSamePictureAfterAnotherRound) {
+  for (std::uint64_t seed = 30; seed < 40; ++seed) {
+    const RadarSweep sent = random_sweep(seed);
+    const std::vector<float> rows = to_radar_rows(sent);
+    const auto got = from_radar_rows(rows, sent.azimuths, sent.bins + kRadarRowHeader);
+    ASSERT_THAT(got, test::IsOk());
+    const std::vector<float> again = to_radar_rows(*got);
+    ASSERT_EQ(again.size(), rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_NEAR(again[i], rows[i], 2e-6) << i;
+  }
+}
+
+TEST(CheckSweep, RefusesEveryFieldOutOfRange) {
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  const RadarSweep sound = random_sweep(5);
+  ASSERT_THAT(check(sound), test::IsOk());
+  const std::vector<std::function<void(RadarSweep&)>> faults{
+      [](RadarSweep& s) { s.azimuths = 0; },
+      [](RadarSweep& s) { s.azimuths = -s.azimuths; },
+      [](RadarSweep& s) { s.azimuths = kMostRadarAzimuths + 1; },
+      [](RadarSweep& s) { s.bins = 0; },
+      [](RadarSweep& s) { s.bins = kMostRadarBins + 1; },
+      [](RadarSweep& s) { ++s.bins; },
+      [](RadarSweep& s) { s.power.pop_back(); },
+      [](RadarSweep& s) { s.power.push_back(1); },
+      [](RadarSweep& s) { s.power.back() = std::nanf(""); },
+      [](RadarSweep& s) { s.power.front() = std::numeric_limits<float>::infinity(); },
+      [](RadarSweep& s) { s.range_resolution_m = 0; },
+      [](RadarSweep& s) { s.range_resolution_m = -0.1; },
+      [&](RadarSweep& s) { s.range_resolution_m = inf; },
+      [&](RadarSweep& s) { s.range_resolution_m = nan; },
+      [&](RadarSweep& s) { s.range_min_m = nan; },
+      [&](RadarSweep& s) { s.azimuth_min_rad = inf; },
+      [](RadarSweep& s) { s.azimuth_increment_rad = 0; },
+      [&](RadarSweep& s) { s.azimuth_increment_rad = nan; },
+      [](RadarSweep& s) { s.duration_s = -0.1; },
+      [&](RadarSweep& s) { s.duration_s = inf; },
+      [&](RadarSweep& s) { s.duration_s = nan; },
+      [&](RadarSweep& s) { s.T_robot_radar = Pose2(nan, 0, 0); },
+      [&](RadarSweep& s) { s.T_robot_radar = Pose2(0, 0, inf); }};
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    RadarSweep sweep = sound;
+    faults[i](sweep);
+    const auto refused = check(sweep);
+    ASSERT_THAT(refused, test::Fails(Errc::kCorrupt)) << "fault " << i;
+    EXPECT_NE(refused.error().message.find("radar sweep"), std::string::npos);
+  }
 }
 
 }  // namespace
