@@ -40,12 +40,12 @@ struct JudgeWall {
   int layout_wall = 0;
   WallVerdict verdict = WallVerdict::kNone;
 };
-/// "This wall is 4.2 m long", measured by a person; nothing takes it back.
+/// "This wall is 4.2 m long", measured by a person; no length takes an earlier one back.
 struct MeasureWall {
   int layout_wall = 0;
   std::optional<double> length_m;
 };
-/// "This corner of the plan is here"; nothing takes the pin out.
+/// "This corner of the plan is here"; no place takes the pin out.
 struct PinCorner {
   int layout_corner = 0;
   std::optional<Point2> p_map;

@@ -7,6 +7,8 @@
 #include <array>
 #include <vector>
 
+#include "core/text.hpp"
+
 namespace smokemap::server {
 namespace {
 
@@ -33,7 +35,7 @@ bool same_in_constant_time(std::string_view a, std::string_view b) {
 }
 
 bool usable_name(const std::string& name) {
-  if (name.empty() || name.size() > 40) return false;
+  if (name.empty() || characters(name) > 40) return false;
   for (const char c : name)
     if (static_cast<unsigned char>(c) < 32 || c == 127) return false;
   return true;

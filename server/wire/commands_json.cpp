@@ -3,22 +3,17 @@
 #include <array>
 
 #include "server/wire/layout_json.hpp"
+#include "server/wire/words.hpp"
 
 namespace smokemap::server {
 namespace {
 
-const std::vector<const char*> kFrames{"layout_px", "sketch_px", "map"};
-const std::vector<const char*> kStrokeKinds{"wall", "door", "note"};
-const std::vector<const char*> kWallVerdicts{"none", "gone", "there"};
-const std::vector<const char*> kVerdicts{"proposed", "confirmed", "rejected"};
 constexpr std::size_t kMostStrokePoints = 20'000;
 constexpr int kMostWalls = 1'000'000;
 
-const char* frame_word(PlaceFrame frame) { return kFrames[static_cast<std::size_t>(frame)]; }
-
 Place place_from(Fields& f) {
   Place place;
-  place.frame = static_cast<PlaceFrame>(f.word("frame", kFrames));
+  place.frame = static_cast<PlaceFrame>(f.word("frame", kFrameWords));
   place.p = f.point("p");
   return place;
 }
@@ -57,7 +52,7 @@ Result<Command> remove_anchor(const Json& data, const Authorship&) {
 Result<Command> judge_wall(const Json& data, const Authorship&) {
   Fields f(data, "judge_wall");
   return finish(
-      f, JudgeWall{f.integer("wall", 0, kMostWalls), static_cast<WallVerdict>(f.word("verdict", kWallVerdicts))});
+      f, JudgeWall{f.integer("wall", 0, kMostWalls), static_cast<WallVerdict>(f.word("verdict", kWallVerdictWords))});
 }
 Result<Command> measure_wall(const Json& data, const Authorship&) {
   Fields f(data, "measure_wall");
@@ -76,7 +71,7 @@ Result<Command> add_stroke(const Json& data, const Authorship& by) {
   Stroke stroke;
   stroke.id = f.id("stroke_id");
   stroke.author = by.author;
-  stroke.kind = static_cast<StrokeKind>(f.word("kind", kStrokeKinds));
+  stroke.kind = static_cast<StrokeKind>(f.word("kind", kStrokeWords));
   stroke.width_px = f.number("width", 0.1, 200);
   stroke.points_px = f.points("points", 1, kMostStrokePoints);
   return finish(f, AddStroke{std::move(stroke)});
@@ -95,7 +90,7 @@ Result<Command> set_sketch_sheet(const Json& data, const Authorship&) {
 Result<Command> judge_pair(const Json& data, const Authorship&) {
   Fields f(data, "judge_pair");
   return finish(
-      f, JudgePair{f.point("sketch_px"), f.point("plan_px"), static_cast<Verdict>(f.word("verdict", kVerdicts))});
+      f, JudgePair{f.point("sketch_px"), f.point("plan_px"), static_cast<Verdict>(f.word("verdict", kVerdictWords))});
 }
 Result<Command> place_poi(const Json& data, const Authorship& by) {
   Fields f(data, "place_poi");
@@ -174,7 +169,7 @@ struct DataOf {
   }
   Json operator()(const RemoveAnchor& c) const { return {{"id", c.id}}; }
   Json operator()(const JudgeWall& c) const {
-    return {{"wall", c.layout_wall}, {"verdict", kWallVerdicts[static_cast<std::size_t>(c.verdict)]}};
+    return {{"wall", c.layout_wall}, {"verdict", word_of(kWallVerdictWords, c.verdict)}};
   }
   Json operator()(const MeasureWall& c) const {
     return {{"wall", c.layout_wall}, {"length", c.length_m ? Json(*c.length_m) : Json()}};
@@ -186,7 +181,7 @@ struct DataOf {
     Json points = Json::array();
     for (const Point2& p : c.stroke.points_px) points.push_back(plain_point(p));
     return {{"stroke_id", c.stroke.id},
-            {"kind", kStrokeKinds[static_cast<std::size_t>(c.stroke.kind)]},
+            {"kind", word_of(kStrokeWords, c.stroke.kind)},
             {"width", c.stroke.width_px},
             {"points", std::move(points)}};
   }
@@ -196,12 +191,12 @@ struct DataOf {
   Json operator()(const JudgePair& c) const {
     return {{"sketch_px", plain_point(c.p_sketch_px)},
             {"plan_px", plain_point(c.p_layout_px)},
-            {"verdict", kVerdicts[static_cast<std::size_t>(c.verdict)]}};
+            {"verdict", word_of(kVerdictWords, c.verdict)}};
   }
   Json operator()(const PlacePoi& c) const {
     return {{"poi_id", c.poi.id},
             {"kind", to_string(c.poi.kind)},
-            {"frame", frame_word(c.poi.place.frame)},
+            {"frame", word_of(kFrameWords, c.poi.place.frame)},
             {"p", plain_point(c.poi.place.p)},
             {"label", c.poi.label}};
   }
@@ -209,7 +204,7 @@ struct DataOf {
   Json operator()(const SetGoal& c) const {
     return {{"goal_id", c.goal.id},
             {"robot", c.goal.robot},
-            {"frame", frame_word(c.goal.place.frame)},
+            {"frame", word_of(kFrameWords, c.goal.place.frame)},
             {"p", plain_point(c.goal.place.p)},
             {"heading", c.goal.heading_rad ? Json(*c.goal.heading_rad) : Json(nullptr)}};
   }

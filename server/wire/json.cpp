@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/text.hpp"
+
 namespace smokemap::server {
 namespace {
 
@@ -52,8 +54,9 @@ std::string to_text(const Json& json) { return json.dump(-1, ' ', false, Json::e
 
 double rounded(double value, double step) {
   if (!std::isfinite(value)) return 0;
-  const double inverse = std::round(1.0 / step);
-  const double result = std::round(value * inverse) / inverse;
+  const double inverse = std::round(1.0 / step), steps = value * inverse;
+  if (std::abs(steps) > 9e15) return value;  // it has no such digits; and a product beyond all numbers would be null
+  const double result = std::round(steps) / inverse;
   return result == 0 ? 0 : result;  // no "-0.0"
 }
 
@@ -71,7 +74,7 @@ std::optional<Point2> point_of(const Json& json) {
 }
 
 Fields::Fields(const Json& object, std::string owner) : object_(object), owner_(std::move(owner)) {
-  if (!object_.is_object()) complain("is not an object");
+  if (!object_.is_object()) complain(" is not an object");
 }
 
 bool Fields::has(const char* field) const {
@@ -95,12 +98,12 @@ const Json* Fields::require(const char* field) {
   return value;
 }
 
-std::string Fields::text(const char* field, std::size_t max_bytes, bool required) {
+std::string Fields::text(const char* field, std::size_t max_characters, bool required) {
   if (!required && !has(field)) return {};
   const Json* value = require(field);
   if (!value) return {};
-  if (!value->is_string() || value->get_ref<const std::string&>().size() > max_bytes) {
-    complain(std::string(".") + field + " must be text of at most " + std::to_string(max_bytes) + " bytes");
+  if (!value->is_string() || characters(value->get_ref<const std::string&>()) > max_characters) {
+    complain(std::string(".") + field + " must be text of at most " + std::to_string(max_characters) + " characters");
     return {};
   }
   return value->get<std::string>();
@@ -169,22 +172,12 @@ std::vector<Point2> Fields::points(const char* field, std::size_t at_least, std:
   return points;
 }
 
-std::size_t Fields::word(const char* field, const std::vector<const char*>& words) {
+std::size_t Fields::word(const char* field, std::span<const char* const> words) {
   const std::string value = text(field, 64);
   for (std::size_t i = 0; i < words.size(); ++i)
     if (value == words[i]) return i;
   complain(std::string(".") + field + " is not a word known here");
   return 0;
-}
-
-const Json* Fields::array(const char* field, std::size_t at_most) {
-  if (!has(field)) return nullptr;
-  const Json* value = find(field);
-  if (!value->is_array() || value->size() > at_most) {
-    complain(std::string(".") + field + " must be a list of at most " + std::to_string(at_most));
-    return nullptr;
-  }
-  return value;
 }
 
 }  // namespace smokemap::server

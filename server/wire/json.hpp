@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,7 +43,7 @@ class Fields {
   Fields(const Json& object, std::string owner);
 
   bool has(const char* field) const;  ///< present and not null
-  std::string text(const char* field, std::size_t max_bytes, bool required = true);
+  std::string text(const char* field, std::size_t max_characters, bool required = true);
   std::string id(const char* field);  ///< 1..64 printable bytes without space
   double number(const char* field, double low = -kLargest, double high = kLargest);
   int integer(const char* field, int low, int high);
@@ -50,8 +51,7 @@ class Fields {
   Point2 point(const char* field);
   std::vector<Point2> points(const char* field, std::size_t at_least, std::size_t at_most);
   /// The index of the field's word in `words`.
-  std::size_t word(const char* field, const std::vector<const char*>& words);
-  const Json* array(const char* field, std::size_t at_most);  ///< null when absent
+  std::size_t word(const char* field, std::span<const char* const> words);
 
   void complain(const std::string& what);
   bool ok() const { return complaint_.empty(); }

@@ -3,23 +3,12 @@
 #include <optional>
 
 #include "server/wire/parts.hpp"
+#include "server/wire/words.hpp"
 
 namespace smokemap::server {
 namespace {
 
-constexpr const char* kFrameWords[] = {"layout_px", "sketch_px", "map"};
-constexpr const char* kLinkWords[] = {"kept", "doubtful", "rejected"};
-constexpr const char* kLinkQualityWords[] = {"fresh", "stale", "lost"};
-constexpr const char* kStrokeWords[] = {"wall", "door", "note"};
-constexpr const char* kRegionWords[] = {"room", "corridor"};
-constexpr const char* kVerdictWords[] = {"proposed", "confirmed", "rejected"};
 constexpr int kMeshSteps = 12;
-
-template <typename Enum, std::size_t N>
-const char* word_of(const char* const (&words)[N], Enum value) {
-  const auto i = static_cast<std::size_t>(value);
-  return i < N ? words[i] : words[0];
-}
 
 double to_ms(Stamp stamp) { return std::floor(static_cast<double>(stamp) * 1e-6); }
 Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }

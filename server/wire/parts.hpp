@@ -74,8 +74,9 @@ struct PartState {
 /// The next state, or null when nothing changed.
 std::shared_ptr<const PartState> advance(const PartState& state, const PartTable& table);
 
-/// `delta` messages that bring a browser from revision `from` (0 = nothing) to `state`; none when it is there already
-/// or when there is nothing to say to a fresh one. Each at most about `max_bytes`.
+/// `delta` messages that bring a browser from revision `from` (0 = nothing) to `state`; none when it is there already.
+/// Each at most about `max_bytes`. Only the last one carries the new revision: whoever loses the link in between asks
+/// for all of it again.
 std::vector<std::string> delta_messages(Part part, const PartState& state, std::uint64_t from,
                                         std::size_t max_bytes = 32 * 1024);
 

@@ -232,12 +232,12 @@ Result<DecodedFrame> decode_map_frame(std::string_view text) {
   DecodedFrame frame;
   const auto version = bytes.take<std::uint8_t>();
   frame.type = bytes.take<std::uint8_t>();
-  (void)bytes.take<std::uint16_t>();
+  const auto layer = bytes.take<std::uint16_t>();
   frame.header.epoch = bytes.take<std::uint32_t>();
   frame.header.seq = bytes.take<std::uint64_t>();
   frame.header.server_ms = std::bit_cast<double>(bytes.take<std::uint64_t>());
   const auto count = bytes.take<std::uint16_t>();
-  if (bytes.ended_short() || version != 1 || (frame.type != 1 && frame.type != 2))
+  if (bytes.ended_short() || version != 1 || layer != 0 || (frame.type != 1 && (frame.type != 2 || count != 0)))
     return fail(Errc::kCorrupt, "not a map frame of version 1");
   for (int i = 0; i < count; ++i) {
     DecodedTile tile;
@@ -247,7 +247,9 @@ Result<DecodedFrame> decode_map_frame(std::string_view text) {
     const auto value = bytes.take<std::uint8_t>();
     tile.version = bytes.take<std::uint32_t>();
     const std::string_view deflated = bytes.take(bytes.take<std::uint32_t>());
-    if (bytes.ended_short() || encoding > 1 || value > 15) return fail(Errc::kCorrupt, "map frame cut off in a tile");
+    if (bytes.ended_short()) return fail(Errc::kCorrupt, "map frame cut off in a tile");
+    if (encoding > 1 || value > 15 || (encoding == 0 ? !deflated.empty() : value != 0))
+      return fail(Errc::kCorrupt, "map frame with a tile that says two things");
     if (encoding == 0)
       tile.cells.fill(static_cast<std::uint8_t>(value | (value << 4)));
     else if (!inflate_raw(deflated, tile.cells))

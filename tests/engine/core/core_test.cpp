@@ -10,6 +10,7 @@
 #include "core/check.hpp"
 #include "core/progress.hpp"
 #include "core/random.hpp"
+#include "core/text.hpp"
 #include "core/time.hpp"
 #include "tests/support/result_matchers.hpp"
 
@@ -245,6 +246,14 @@ TEST(ParamCheck, SpeaksOfTheFirstFieldWhateverItsKind) {
   EXPECT_EQ(said(ParamCheck("P").in_range("a", -kInf, -1, 1).positive("b", 0)), "P.a is -inf, must be within [-1, 1]");
   EXPECT_THAT(ParamCheck("P").in_range("a", 1, 2, 0).result(), test::Fails(Errc::kInvalidArgument))
       << "limits that depend on a field which is wrong itself leave no value";
+}
+
+TEST(Characters, AreWhatPeopleCount) {
+  EXPECT_EQ(characters(""), 0u);
+  EXPECT_EQ(characters("Anna"), 4u);
+  EXPECT_EQ(characters("Zo\xc3\xab"), 3u);
+  EXPECT_EQ(characters("\xe2\x82\xac\xf0\x9f\x94\xa5"), 2u) << "a euro and a fire";
+  EXPECT_EQ(characters(std::string(100, '\x80')), 25u) << "what is no text does not slip under a limit";
 }
 
 }  // namespace

@@ -163,5 +163,22 @@ TEST(Origin, MustBeThePagesOwn) {
     EXPECT_FALSE(OriginPolicy::origin_is_ours(origin, "localhost:8080")) << origin;
 }
 
+TEST(Pairing, ANameInAnotherAlphabetWasTooLongAtTwentyLetters) {
+  Door door;
+  const auto pair_as = [&](const std::string& name) {
+    return door.access->pair({"123456", name, Role::kObserver, false});
+  };
+  std::string forty, forty_one;
+  for (int i = 0; i < 40; ++i) forty += "\xd0\x90";
+  forty_one = forty + "\xd0\x90";
+  EXPECT_THAT(pair_as(forty), test::IsOk()) << "40 letters, 80 bytes";
+  EXPECT_THAT(pair_as(forty_one), test::Fails(Errc::kInvalidArgument));
+  EXPECT_THAT(pair_as(std::string(40, 'a')), test::IsOk());
+  EXPECT_THAT(pair_as(std::string(41, 'a')), test::Fails(Errc::kInvalidArgument));
+  EXPECT_THAT(pair_as(std::string(161, '\x80')), test::Fails(Errc::kInvalidArgument)) << "bytes that are no letters";
+  for (const char* odd : {"", "a\nb", "\x7f", "a\tb"})
+    EXPECT_THAT(pair_as(odd), test::Fails(Errc::kInvalidArgument)) << odd;
+}
+
 }  // namespace
 }  // namespace smokemap::server

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "core/random.hpp"
+#include "tests/support/json_schema.hpp"
 #include "tests/support/result_matchers.hpp"
 
 namespace smokemap::server {
@@ -119,6 +122,101 @@ TEST(ClientMessages, SurviveEveryDamage) {
     }
   }
   EXPECT_GT(taken, 20) << "damage inside of texts and numbers leaves some whole";
+}
+
+std::vector<std::string> messages_of_browsers() {
+  std::vector<std::string> texts;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(SMOKEMAP_SOURCE_DIR) / "proto/examples"))
+    if (entry.path().filename().string().starts_with("client_")) texts.push_back(test::read_json(entry.path()).dump());
+  EXPECT_GT(texts.size(), 20u);
+  return texts;
+}
+
+TEST(EveryMessageOfTheBrowser, IsRefusedWhenCutShortAnywhere) {
+  for (const std::string& text : messages_of_browsers()) {
+    ASSERT_THAT(parse_client_message(text), test::IsOk()) << text;
+    for (std::size_t size = 0; size < text.size(); ++size)
+      ASSERT_THAT(parse_client_message(std::string_view(text).substr(0, size)), test::Fails(Errc::kCorrupt)) << text;
+  }
+}
+
+/// Any field of any message turned into anything else: taken or refused with a reason, nothing in between.
+TEST(EveryMessageOfTheBrowser, AnswersForFieldsOfEveryOtherKind) {
+  const std::vector<Json> odd{nullptr,
+                              true,
+                              -1,
+                              0.5,
+                              1e308,
+                              "",
+                              std::string(100, 'x'),
+                              Json::array(),
+                              Json::object(),
+                              Json::array({1, 2}),
+                              Json{{"x", 1}}};
+  for (const std::string& text : messages_of_browsers()) {
+    const Json whole = Json::parse(text);
+    for (const auto& [field, value] : whole.items())
+      for (const Json& other : odd) {
+        Json changed = whole;
+        changed[field] = other;
+        const auto message = parse_client_message(changed.dump());
+        if (message) continue;
+        EXPECT_TRUE(message.error().code == Errc::kInvalidArgument || message.error().code == Errc::kNotFound)
+            << changed;
+        EXPECT_LT(message.error().message.size(), 200u);
+      }
+  }
+}
+
+TEST(EveryTextOfAMessage, IsTakenAtItsLimitAndRefusedBeyond) {
+  const auto taken = [](Json message, const char* field, std::size_t bytes) {
+    message[field] = std::string(bytes, 'x');
+    return parse_client_message(to_text(message)).ok();
+  };
+  const Json hello{{"type", "hello"}, {"version", 1}}, presence{{"type", "presence"}};
+  const Json command{{"type", "command"}, {"id", "c"}, {"name", "n"}, {"data", Json::object()}};
+  EXPECT_TRUE(taken(hello, "token", 64) && !taken(hello, "token", 65));
+  EXPECT_TRUE(taken(presence, "mode", 32) && !taken(presence, "mode", 33));
+  EXPECT_TRUE(taken(command, "id", 64) && !taken(command, "id", 65));
+  EXPECT_TRUE(taken(command, "name", 64) && !taken(command, "name", 65));
+  Json ink{{"type", "ink"}, {"stroke_id", "s"}, {"points", Json::array()}};
+  for (int i = 0; i < 2000; ++i) ink["points"].push_back({i, i});
+  EXPECT_THAT(parse_client_message(to_text(ink)), test::IsOk());
+  ink["points"].push_back({0, 0});
+  EXPECT_THAT(parse_client_message(to_text(ink)), test::Fails(Errc::kInvalidArgument));
+  std::string large = R"({"type":"ack","seq":1)";
+  large += std::string(256 * 1024 - large.size() - 1, ' ') + "}";
+  EXPECT_THAT(parse_client_message(large), test::IsOk());
+  EXPECT_THAT(parse_client_message(large + " "), test::Fails(Errc::kTooLarge));
+}
+
+TEST(Counters, AreWholeNumbersThatABrowserCanHold) {
+  const auto seq = [](const std::string& number) {
+    const auto message = parse_client_message(R"({"type":"ack","seq":)" + number + "}");
+    return message ? std::get<AckMessage>(*message).seq : 77u;
+  };
+  EXPECT_EQ(seq("8999999999999999"), 8999999999999999u);
+  EXPECT_EQ(seq("2.9"), 2u);
+  for (const char* number : {"-1", "0", "9000000000000000", "18446744073709551615", "18446744073709551616", "1e300",
+                             "-9223372036854775808", "\"5\"", "null", "[5]", "true"})
+    EXPECT_EQ(seq(number), 0u) << number;
+}
+
+TEST(MessagesOfTheServer, HoldAnyTextThatPeopleGaveThemselves) {
+  const std::string name = "Zo\xc3\xab \"Blaze\" \\ \x01\xff";
+  const Identity who{"d1", name, Role::kObserver};
+  for (const std::string& text :
+       {welcome_message({who, 1, 2, 3, 0.05}), ink_message(who, {"s", {Point2(1e308, 0.12345)}}),
+        reply_message({name, std::nullopt, "invalid_argument", name}), bye_message(name)}) {
+    const Json message = Json::parse(text, nullptr, false);
+    ASSERT_FALSE(message.is_discarded()) << text;
+    EXPECT_FALSE(message["type"].get<std::string>().empty());
+  }
+  const Json ink = Json::parse(ink_message(who, {"s", {Point2(0.123456, -0.004)}}));
+  EXPECT_EQ(ink["points"], (Json::array({Json::array({0.12, 0.0})}))) << "in hundredths of a pixel";
+  EXPECT_EQ(Json::parse(welcome_message({who, 4'294'967'295u, 8'999'999'999'999'999u, 3, 0.05}))["seq"],
+            8'999'999'999'999'999u);
 }
 
 }  // namespace

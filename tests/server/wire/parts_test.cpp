@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <limits>
+
 #include "core/random.hpp"
 #include "server/wire/live_state.hpp"
 #include "tests/support/example_snapshot.hpp"
+#include "tests/support/json_schema.hpp"
 
 namespace smokemap::server {
 namespace {
@@ -126,6 +130,96 @@ TEST(PartTables, NeverShowARejectedPairAsTheRegionsPlace) {
   match->matching.pairs[0].verdict = Verdict::kRejected;
   snapshot.match = match;
   EXPECT_TRUE(Json::parse(part_table(Part::kSketchRegions, snapshot, {}).at("1"))["pair"].is_null());
+}
+
+/// The link breaks after every message in turn; the browser comes back with the revision it was told last.
+TEST(PartDeltas, ALinkThatBrokeBetweenTwoMessagesOfOneDeltaLostTheRestForEver) {
+  PartTable table;
+  for (int i = 0; i < 40; ++i) table["id" + std::to_string(i)] = "{\"v\":" + std::to_string(i) + "}";
+  const auto first = advance(PartState{}, table);
+  PartTable later = table;
+  for (int i = 0; i < 40; i += 2) later["id" + std::to_string(i)] = "{\"v\":-1}";
+  for (int i = 1; i < 40; i += 4) later.erase("id" + std::to_string(i));
+  const auto second = advance(*first, later);
+  for (const std::uint64_t held : {0, 1}) {
+    const auto messages = delta_messages(Part::kPois, *second, held, 60);
+    ASSERT_GT(messages.size(), 5u);
+    for (std::size_t broken = 0; broken <= messages.size(); ++broken) {
+      Mirror mirror;
+      if (held == 1)
+        for (const std::string& text : delta_messages(Part::kPois, *first, 0)) mirror.take(text);
+      for (std::size_t i = 0; i < broken; ++i) mirror.take(messages[i]);
+      for (const std::string& text : delta_messages(Part::kPois, *second, mirror.revision, 60)) mirror.take(text);
+      EXPECT_TRUE(mirror.shows(later)) << "held " << held << ", broken after " << broken;
+      EXPECT_EQ(mirror.revision, second->revision);
+    }
+  }
+}
+
+TEST(PartDeltas, StartAfreshForThoseWhoKnowAFutureOrAForgottenPast) {
+  const auto first = advance(PartState{}, {{"a", "{}"}, {"b", "{}"}});
+  const auto messages = delta_messages(Part::kPois, *first, 99);
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_TRUE(Json::parse(messages[0])["reset"]) << "a revision that never was: of another run, or invented";
+  PartTable many;
+  for (int i = 0; i < 6000; ++i) many["id" + std::to_string(i)] = "{}";
+  const auto full = advance(*first, many);
+  const auto empty = advance(*full, {});  // so many deletions are not remembered one by one
+  const auto reset = delta_messages(Part::kPois, *empty, first->revision);
+  ASSERT_EQ(reset.size(), 1u);
+  EXPECT_EQ(Json::parse(reset[0]), (Json{{"type", "delta"},
+                                         {"part", "pois"},
+                                         {"rev", empty->revision},
+                                         {"reset", true},
+                                         {"set", Json::object()},
+                                         {"del", Json::array()}}));
+}
+
+/// What a broken solve or a hostile robot may put into a snapshot.
+Snapshot snapshot_without_sense() {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  Snapshot s = test::example_snapshot();
+  RobotStatus& robot = s.robots[0];
+  robot.T_map_robot = Pose2(nan, inf, nan);
+  robot.sigma_m = inf, robot.sigma_rad = -inf, robot.speed_mps = 1e308;
+  robot.path_map = {Point2(nan, 1), Point2(-1e308, inf)};
+  robot.note = "\xff\xfe broken", robot.last_heard = std::numeric_limits<Stamp>::min();
+  s.pois[0].in_map = {Point2(nan, nan), inf, nan, "\xc0"};
+  s.pois[0].poi.label = "\x80", s.pois[0].poi.created = std::numeric_limits<Stamp>::max();
+  s.goals[0].remaining_m = nan, s.goals[0].eta_s = inf, s.goals[0].goal.heading_rad = nan;
+  auto merged = std::make_shared<MergedMap>(*s.merged);
+  for (MergedWall& wall : merged->walls) {
+    wall.segment_map = {Point2(nan, inf), Point2(1e308, -1e308)};
+    wall.confidence = nan, wall.displacement_m = inf;
+  }
+  merged->fit = {nan, "unknown"};
+  s.merged = merged;
+  auto match = std::make_shared<MatchView>(*s.match);
+  match->matching.pairs[0].confidence = nan, match->matching.margin = inf;
+  s.match = match;
+  auto sketch = std::make_shared<SketchView>(*s.sketch);
+  sketch->sketch.strokes[0].width_px = nan, sketch->gaps[0].gap_px.a = Point2(inf, nan);
+  s.sketch = sketch;
+  return s;
+}
+
+TEST(PartTables, KeepTheirSchemasWhateverNumbersASnapshotHolds) {
+  const test::Schema schema(std::filesystem::path(SMOKEMAP_SOURCE_DIR) / "proto/ws/parts.schema.json");
+  const Snapshot snapshot = snapshot_without_sense();
+  for (std::size_t i = 0; i < kPartCount; ++i) {
+    const auto part = static_cast<Part>(i);
+    const PartTable table = part_table(part, snapshot, {});
+    for (const auto& [id, text] : table) {
+      const Json object = Json::parse(text, nullptr, false);
+      ASSERT_FALSE(object.is_discarded()) << to_string(part) << " " << text;
+      const std::string definition = part == Part::kInfo ? "info." + id : to_string(part);
+      EXPECT_EQ(schema.complaint(object, schema.def(definition)), "") << to_string(part) << " " << text;
+    }
+    const auto state = advance(PartState{}, table);
+    if (!state) continue;  // an empty part is none
+    for (const std::string& message : delta_messages(part, *state, 0))
+      EXPECT_FALSE(Json::parse(message, nullptr, false).is_discarded()) << message;
+  }
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/random.hpp"
 #include "tests/support/result_matchers.hpp"
 
@@ -143,6 +145,111 @@ TEST(TileEncoder, TurnsTilesThatVanishIntoUnknownOnes) {
   EXPECT_TRUE(encoder.table().at({4, 4})->uniform);
   EXPECT_EQ(encoder.table().at({4, 4})->value, kCodeUnknown);
   EXPECT_FALSE(encoder.update({}, 3));
+}
+
+std::shared_ptr<const EncodedTile> random_tile(std::mt19937_64& random) {
+  PackedTile cells;
+  const bool same = uniform01(random) < 0.4;
+  const auto value = static_cast<std::uint8_t>(uniform_index(random, 16) * 17);
+  for (auto& byte : cells) byte = same ? value : static_cast<std::uint8_t>(uniform_index(random, 256));
+  const auto number = [&] { return static_cast<int>(uniform_index(random, 65536)) - 32768; };
+  return std::make_shared<const EncodedTile>(
+      encode_tile({number(), number()}, static_cast<std::uint32_t>(random()), cells));
+}
+
+TEST(MapFrame, OfSeveralTilesKeepsEveryNumberOfItsHeadAndItsTiles) {
+  std::mt19937_64 random(6);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<std::shared_ptr<const EncodedTile>> tiles;
+    for (std::uint64_t n = uniform_index(random, 6); n > 0; --n) tiles.push_back(random_tile(random));
+    const MapFrameHeader header{static_cast<std::uint32_t>(random()), random(), uniform(random, -1e15, 1e15)};
+    const std::string bytes = map_frame(header, tiles);
+    const auto frame = decode_map_frame(bytes);
+    ASSERT_THAT(frame, test::IsOk());
+    EXPECT_EQ(frame->type, 1);
+    EXPECT_EQ(frame->header.epoch, header.epoch);
+    EXPECT_EQ(frame->header.seq, header.seq);
+    EXPECT_EQ(frame->header.server_ms, header.server_ms);
+    ASSERT_EQ(frame->tiles.size(), tiles.size());
+    std::size_t size = 26;
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      EXPECT_EQ(frame->tiles[i].key, tiles[i]->key);
+      EXPECT_EQ(frame->tiles[i].version, tiles[i]->version);
+      size += tiles[i]->wire_bytes();
+      const auto again = encode_tile(frame->tiles[i].key, frame->tiles[i].version, frame->tiles[i].cells);
+      EXPECT_EQ(again.deflated, tiles[i]->deflated);
+      EXPECT_EQ(again.value, tiles[i]->value);
+    }
+    EXPECT_EQ(bytes.size(), size) << "wire_bytes says what a tile costs";
+  }
+}
+
+TEST(MapFrame, OfNothingButItsEndIsShort) {
+  const std::string end = end_of_snapshot_frame({7, 8, 9.5});
+  EXPECT_EQ(end.size(), 26u);
+  const auto frame = decode_map_frame(end);
+  ASSERT_THAT(frame, test::IsOk());
+  EXPECT_EQ(frame->type, 2);
+  EXPECT_EQ(frame->header.seq, 8u);
+  for (std::size_t size = 0; size < end.size(); ++size)
+    EXPECT_THAT(decode_map_frame(end.substr(0, size)), test::Fails(Errc::kCorrupt)) << size;
+}
+
+TEST(MapFrame, SurvivesAnyDamage) {
+  std::mt19937_64 random(8);
+  const std::string whole = map_frame({1, 2, 3}, {random_tile(random), random_tile(random), random_tile(random)});
+  int taken = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::string bytes = whole;
+    for (std::uint64_t n = 1 + uniform_index(random, 4); n > 0; --n)
+      bytes[uniform_index(random, i % 2 == 0 ? 60 : bytes.size())] = static_cast<char>(uniform_index(random, 256));
+    if (i % 3 == 0) bytes.resize(uniform_index(random, bytes.size()));
+    const auto frame = decode_map_frame(bytes);
+    taken += frame.ok();
+    EXPECT_TRUE(!frame || frame->tiles.size() <= 3u);
+  }
+  EXPECT_GT(taken, 10) << "other numbers in the head are other numbers";
+}
+
+TEST(MapFrame, TheReaderTookFramesThatTheWriterNeverWrites) {
+  PackedTile cells{};
+  const std::string uniform_frame =
+      map_frame({1, 2, 3}, {std::make_shared<EncodedTile>(encode_tile({0, 0}, 1, cells))});
+  cells[5] = 3;
+  const std::string packed_frame = map_frame({1, 2, 3}, {std::make_shared<EncodedTile>(encode_tile({0, 0}, 1, cells))});
+  const auto changed = [](std::string bytes, std::size_t at, char value) {
+    bytes[at] = value;
+    return decode_map_frame(bytes);
+  };
+  EXPECT_THAT(changed(uniform_frame, 2, 1), test::Fails(Errc::kCorrupt)) << "a layer that nobody knows";
+  EXPECT_THAT(changed(uniform_frame, 1, 2), test::Fails(Errc::kCorrupt)) << "an end with tiles";
+  EXPECT_THAT(changed(packed_frame, 31, 5), test::Fails(Errc::kCorrupt)) << "a packed tile with a value";
+  std::string two_things = uniform_frame;
+  two_things[36] = 1;  // one byte of packed cells, in a uniform tile
+  EXPECT_THAT(decode_map_frame(two_things + "x"), test::Fails(Errc::kCorrupt));
+}
+
+TEST(MergedTiles, DrawAWallTheSameInBothDirections) {
+  std::mt19937_64 random(9);
+  for (int round = 0; round < 50; ++round) {
+    const Point2 a(uniform(random, -20, 20), uniform(random, -20, 20));
+    const Point2 b = a + Point2(uniform(random, -9, 9), uniform(random, -9, 9));
+    MergedMap there, back;
+    there.walls = {{0, {a, b}, WallState::kUnseen, 1, 0, 0}};
+    back.walls = {{0, {b, a}, WallState::kUnseen, 1, 0, 0}};
+    const auto tiles = merged_tiles({}, there, kResolution);
+    const auto cell = [](double v) { return static_cast<int>(std::floor(v / kResolution)); };
+    for (int i = 0; i <= 100; ++i) {  // every point of the wall lies in a painted cell or beside one
+      const Point2 p = a + i / 100.0 * (b - a);
+      bool painted = false;
+      for (int k = 0; k < 9; ++k)
+        painted = painted || code_of(tiles, cell(p.x()) + k % 3 - 1, cell(p.y()) + k / 3 - 1) == kCodePlanOnly;
+      EXPECT_TRUE(painted) << p.transpose();
+    }
+    EXPECT_EQ(code_of(tiles, cell(a.x()), cell(a.y())), kCodePlanOnly);
+    EXPECT_EQ(code_of(tiles, cell(b.x()), cell(b.y())), kCodePlanOnly);
+    EXPECT_EQ(merged_tiles({}, back, kResolution).size(), tiles.size());
+  }
 }
 
 }  // namespace
