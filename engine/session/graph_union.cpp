@@ -50,6 +50,8 @@ Result<Ok> GraphUnion::join(const std::string& robot, const GraphLink& link) {
   if (!index_of(it->second, link.own_node)) return fail(Errc::kNotFound, "the joining node does not exist");
   if (link.union_node < 0 || link.union_node >= static_cast<int>(slots_.size()))
     return fail(Errc::kNotFound, "the node to join at does not exist");
+  if (!link.T_union_own.is_finite() || !(link.sigma_m > 0) || !(link.sigma_rad > 0))
+    return fail(Errc::kInvalidArgument, "a link needs a place and errors above zero");
   members_[robot].link = link;
   take_new_nodes(robot);
   return Ok{};
@@ -67,8 +69,9 @@ void GraphUnion::leave(const std::string& robot) {
   for (auto& [name, member] : members_) {
     for (int& id : member.union_ids) id = new_id[static_cast<std::size_t>(id)];
     if (!member.link) continue;
-    member.link->union_node = new_id[static_cast<std::size_t>(member.link->union_node)];
-    if (member.link->union_node < 0) stranded.push_back(name);
+    int& hangs_on = member.link->union_node;  // less than 0: stranded already, and about to leave
+    if (hangs_on >= 0) hangs_on = new_id[static_cast<std::size_t>(hangs_on)];
+    if (hangs_on < 0) stranded.push_back(name);
   }
   for (const std::string& name : stranded) leave(name);
 }

@@ -33,7 +33,8 @@ class GraphUnion {
  public:
   /// The first robot's graph, or the newer graph of a robot that joined. Graphs of others are kept until they join.
   void update(const std::string& robot, const PoseGraph& graph);
-  /// kNotFound for a robot without a graph, or for nodes that do not exist. A robot that joined already is left alone.
+  /// kNotFound for a robot without a graph or for nodes that do not exist, kInvalidArgument for a link that says
+  /// nothing. A robot that joined already is left alone.
   Result<Ok> join(const std::string& robot, const GraphLink& link);
   /// Takes a robot's nodes out again; ids are counted anew (`generation`). The first robot cannot leave.
   void leave(const std::string& robot);

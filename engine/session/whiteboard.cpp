@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/text.hpp"
+
 namespace smokemap {
 namespace {
 
@@ -9,6 +11,9 @@ constexpr std::size_t kMostStrokes = 5000;
 constexpr double kShortestWallM = 0.1, kLongestWallM = 500;
 constexpr std::size_t kMostPois = 5000;
 constexpr std::size_t kMostGoals = 1000;
+constexpr std::size_t kMostAnchors = 1000;
+constexpr std::size_t kMostPairVerdicts = 5000;
+constexpr double kWidestPlanM = 2000;  // as wide as the map that robots plan on
 
 Result<Ok> finite(const Point2& p, const char* what) {
   if (p.allFinite() && p.cwiseAbs().maxCoeff() < 1e6) return Ok{};
@@ -20,6 +25,13 @@ Result<Ok> named(const std::string& id, const char* what) {
   return fail(Errc::kInvalidArgument, std::string(what) + " needs an id of 1 to 64 characters");
 }
 
+double width_of_corners_px(const LayoutMap& layout) {
+  if (layout.corners.empty()) return 0;
+  Point2 low = layout.corners.front().p_px, high = low;
+  for (const LayoutCorner& corner : layout.corners) low = low.cwiseMin(corner.p_px), high = high.cwiseMax(corner.p_px);
+  return (high - low).maxCoeff();
+}
+
 Result<Ok> check_layout(const LayoutMap& layout) {
   if (layout.width_px <= 0 || layout.height_px <= 0) return fail(Errc::kInvalidArgument, "the plan has no size");
   const auto corners = static_cast<int>(layout.corners.size());
@@ -28,9 +40,21 @@ Result<Ok> check_layout(const LayoutMap& layout) {
   for (const LayoutWall& wall : layout.walls)
     if (wall.corner_a < 0 || wall.corner_b < 0 || wall.corner_a >= corners || wall.corner_b >= corners)
       return fail(Errc::kInvalidArgument, "a wall of the plan ends at a corner that is not there");
-  if (layout.scale && !(layout.scale->metres_per_pixel > 0 && layout.scale->metres_per_pixel < 10))
+  if (!layout.scale) return Ok{};
+  if (!(layout.scale->metres_per_pixel > 0 && layout.scale->metres_per_pixel < 10))
     return fail(Errc::kInvalidArgument, "the plan's scale is not between 0 and 10 metres per pixel");
+  if (width_of_corners_px(layout) * layout.scale->metres_per_pixel > kWidestPlanM)
+    return fail(Errc::kInvalidArgument, "with this scale the plan is more than 2 km wide");
   return Ok{};
+}
+
+/// False when it is there already: the same command again changes nothing.
+template <typename Map, typename Value>
+bool put(Map& map, const typename Map::key_type& key, const Value& value) {
+  const auto it = map.find(key);
+  if (it != map.end() && it->second == value) return false;
+  map.insert_or_assign(key, value);
+  return true;
 }
 
 bool near(const Point2& a, const Point2& b) { return (a - b).norm() < 1e-6; }
@@ -93,6 +117,11 @@ Result<Ok> Whiteboard::do_apply(const AddAnchor& command) {
   if (const auto ok = named(command.id, "an anchor"); !ok) return ok;
   if (const auto ok = finite(command.p_layout_px, "the anchor on the plan"); !ok) return ok;
   if (const auto ok = finite(command.p_map, "the anchor on the map"); !ok) return ok;
+  const auto there = anchors.find(command.id);
+  if (there == anchors.end() && anchors.size() >= kMostAnchors) return fail(Errc::kTooLarge, "there are 1000 anchors");
+  if (there != anchors.end() && there->second.p_layout_px == command.p_layout_px &&
+      there->second.p_map == command.p_map)
+    return Ok{};
   anchors[command.id] = command;
   ++revisions.plan;
   return Ok{};
@@ -106,11 +135,9 @@ Result<Ok> Whiteboard::do_apply(const RemoveAnchor& command) {
 Result<Ok> Whiteboard::do_apply(const JudgeWall& command) {
   if (!layout || command.layout_wall < 0 || command.layout_wall >= static_cast<int>(layout->layout.walls.size()))
     return fail(Errc::kNotFound, "the plan has no wall " + std::to_string(command.layout_wall));
-  if (command.verdict == WallVerdict::kNone)
-    wall_verdicts.erase(command.layout_wall);
-  else
-    wall_verdicts[command.layout_wall] = command.verdict;
-  ++revisions.plan;
+  const bool changed = command.verdict == WallVerdict::kNone ? wall_verdicts.erase(command.layout_wall) > 0
+                                                             : put(wall_verdicts, command.layout_wall, command.verdict);
+  if (changed) ++revisions.plan;
   return Ok{};
 }
 
@@ -119,11 +146,9 @@ Result<Ok> Whiteboard::do_apply(const MeasureWall& command) {
     return fail(Errc::kNotFound, "the plan has no wall " + std::to_string(command.layout_wall));
   if (command.length_m && !(*command.length_m >= kShortestWallM && *command.length_m <= kLongestWallM))
     return fail(Errc::kInvalidArgument, "a wall is 0.1 to 500 m long");
-  if (command.length_m)
-    wall_lengths_m[command.layout_wall] = *command.length_m;
-  else
-    wall_lengths_m.erase(command.layout_wall);
-  ++revisions.plan;
+  const bool changed = command.length_m ? put(wall_lengths_m, command.layout_wall, *command.length_m)
+                                        : wall_lengths_m.erase(command.layout_wall) > 0;
+  if (changed) ++revisions.plan;
   return Ok{};
 }
 
@@ -132,11 +157,9 @@ Result<Ok> Whiteboard::do_apply(const PinCorner& command) {
     return fail(Errc::kNotFound, "the plan has no corner " + std::to_string(command.layout_corner));
   if (command.p_map)
     if (const auto ok = finite(*command.p_map, "the corner on the map"); !ok) return ok;
-  if (command.p_map)
-    corner_pins[command.layout_corner] = *command.p_map;
-  else
-    corner_pins.erase(command.layout_corner);
-  ++revisions.plan;
+  const bool changed = command.p_map ? put(corner_pins, command.layout_corner, *command.p_map)
+                                     : corner_pins.erase(command.layout_corner) > 0;
+  if (changed) ++revisions.plan;
   return Ok{};
 }
 
@@ -149,10 +172,17 @@ Result<Ok> Whiteboard::do_apply(const AddStroke& command) {
     if (const auto ok = finite(p, "a point of the stroke"); !ok) return ok;
   for (const Stroke& there : strokes_)
     if (there.id == stroke.id) return Ok{};  // strokes are immutable: the same one again
-  if (strokes_.size() >= kMostStrokes) return fail(Errc::kTooLarge, "the sketch has 5000 strokes; clear it first");
+  if (strokes_.size() - erased_.size() >= kMostStrokes)
+    return fail(Errc::kTooLarge, "the sketch has 5000 strokes; erase some first");
+  if (strokes_.size() >= 2 * kMostStrokes) forget_erased_strokes();
   strokes_.push_back(stroke);
   ++revisions.sketch;
   return Ok{};
+}
+
+void Whiteboard::forget_erased_strokes() {
+  std::erase_if(strokes_, [this](const Stroke& stroke) { return erased_.contains(stroke.id); });
+  erased_.clear();
 }
 
 Result<Ok> Whiteboard::do_apply(const EraseStroke& command) {
@@ -166,6 +196,7 @@ Result<Ok> Whiteboard::do_apply(const EraseStroke& command) {
 }
 
 Result<Ok> Whiteboard::do_apply(const ClearSketch&) {
+  if (strokes_.size() == erased_.size() && pair_verdicts.empty()) return Ok{};
   for (const Stroke& stroke : strokes_) erased_.insert(stroke.id);
   pair_verdicts.clear();
   ++revisions.sketch;
@@ -175,6 +206,7 @@ Result<Ok> Whiteboard::do_apply(const ClearSketch&) {
 Result<Ok> Whiteboard::do_apply(const SetSketchSheet& command) {
   if (command.width_px < 16 || command.height_px < 16 || command.width_px > 8192 || command.height_px > 8192)
     return fail(Errc::kInvalidArgument, "a sheet has 16 to 8192 pixels a side");
+  if (sheet_width_px_ == command.width_px && sheet_height_px_ == command.height_px) return Ok{};
   sheet_width_px_ = command.width_px, sheet_height_px_ = command.height_px;
   ++revisions.sketch;
   return Ok{};
@@ -184,9 +216,13 @@ Result<Ok> Whiteboard::do_apply(const JudgePair& command) {
   if (!layout) return fail(Errc::kNotFound, "there is no plan to match the sketch with");
   for (const Point2& p : {command.p_sketch_px, command.p_layout_px})
     if (const auto ok = finite(p, "the place"); !ok) return ok;
-  std::erase_if(pair_verdicts, [&](const PairVerdict& v) {
+  const auto is_about_these = [&](const PairVerdict& v) {
     return near(v.p_sketch_px, command.p_sketch_px) && near(v.p_layout_px, command.p_layout_px);
-  });
+  };
+  if (!pair_verdicts.empty() && is_about_these(pair_verdicts.back()) && pair_verdicts.back().verdict == command.verdict)
+    return Ok{};
+  std::erase_if(pair_verdicts, is_about_these);
+  if (pair_verdicts.size() >= kMostPairVerdicts) pair_verdicts.erase(pair_verdicts.begin());
   // Also kProposed is kept: it takes back whatever was said before about the same two regions (SketchReader resolves
   // it).
   pair_verdicts.push_back({command.p_sketch_px, command.p_layout_px, command.verdict});
@@ -198,7 +234,8 @@ Result<Ok> Whiteboard::do_apply(const PlacePoi& command) {
   PointOfInterest poi = command.poi;
   if (const auto ok = named(poi.id, "a point of interest"); !ok) return ok;
   if (const auto ok = stamp_frame(poi.place); !ok) return ok;
-  if (poi.label.size() > 200) return fail(Errc::kTooLarge, "a label has at most 200 characters");
+  if (characters(poi.label) > 200) return fail(Errc::kTooLarge, "a label has at most 200 characters");
+  if (pois.size() >= kMostPois) std::erase_if(pois, [](const auto& entry) { return entry.second.removed; });
   if (pois.size() >= kMostPois && !pois.contains(poi.id))
     return fail(Errc::kTooLarge, "there are 5000 points of interest");
   if (const auto it = pois.find(poi.id); it != pois.end()) poi.created = it->second.created;
@@ -220,8 +257,12 @@ Result<Ok> Whiteboard::do_apply(const SetGoal& command) {
   if (goal.heading_rad && !std::isfinite(*goal.heading_rad))
     return fail(Errc::kInvalidArgument, "the heading is not a number");
   if (find_goal(goal.id)) return Ok{};
-  if (goals.size() >= kMostGoals) return fail(Errc::kTooLarge, "there were 1000 goals");
   if (const auto ok = stamp_frame(goal.place); !ok) return ok;
+  if (goals.size() >= kMostGoals) {  // what was reached long ago makes room
+    const auto past = std::find_if(goals.begin(), goals.end(), [](const Goal& g) { return is_final(g.state); });
+    if (past == goals.end()) return fail(Errc::kTooLarge, "1000 goals are waiting");
+    goals.erase(past);
+  }
   goal.state = GoalState::kQueued;
   goal.reason.clear();
   goals.push_back(std::move(goal));

@@ -31,7 +31,8 @@ struct WhiteboardRevisions {
 /// What people did, and nothing else: replaying the commands gives the same whiteboard. No threads, no clock.
 class Whiteboard {
  public:
-  /// Validates, then changes. An error changes nothing. The same command a second time changes nothing.
+  /// Validates, then changes. An error changes nothing. The same command a second time changes nothing, but for a plan
+  /// (its walls are counted anew) and a start (said again, it is meant anew).
   Result<Ok> apply(const Command& command);
 
   std::shared_ptr<const LayoutView> layout;
@@ -77,6 +78,7 @@ class Whiteboard {
   Result<Ok> do_apply(const EmergencyStop& command);
   Result<Ok> do_apply(const SetExploring& command);
   Result<Ok> stamp_frame(Place& place) const;
+  void forget_erased_strokes();
 
   int sheet_width_px_ = 1024;
   int sheet_height_px_ = 768;

@@ -2,6 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/random.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/result_matchers.hpp"
 
@@ -128,6 +134,68 @@ TEST(GraphUnion, RefusesLinksToNodesThatDoNotExist) {
   EXPECT_THAT(all.join("b", {2, 7, Pose2(), 0.1, 0.1}), test::Fails(Errc::kNotFound));
   EXPECT_THAT(all.join("b", {3, 1, Pose2(), 0.1, 0.1}), test::Fails(Errc::kNotFound));
   EXPECT_FALSE(all.has("b"));
+}
+
+TEST(GraphUnion, TwoRobotsThatHungOnTheOneThatLeftWereLookedUpAtPlaceMinusOne) {
+  GraphUnion all;
+  for (const char* robot : {"a", "b", "c", "d", "e"}) all.update(robot, straight(robot, 3));
+  ASSERT_THAT(all.join("b", beside()), test::IsOk());
+  ASSERT_THAT(all.join("c", {4, 0, Pose2(1, 0, 0), 0.1, 0.1}), test::IsOk());
+  ASSERT_THAT(all.join("d", {5, 0, Pose2(1, 0, 0), 0.1, 0.1}), test::IsOk());
+  ASSERT_THAT(all.join("e", {8, 0, Pose2(1, 0, 0), 0.1, 0.1}), test::IsOk()) << "on c";
+  all.leave("b");
+  for (const char* robot : {"b", "c", "d", "e"}) EXPECT_FALSE(all.has(robot)) << robot;
+  expect_consistent(all.graph());
+  EXPECT_EQ(all.graph().nodes.size(), 3u);
+}
+
+TEST(GraphUnion, RefusesLinksThatWouldPullWithoutEnd) {
+  GraphUnion all;
+  all.update("a", straight("a", 3));
+  all.update("b", straight("b", 2));
+  const double nan = std::nan("");
+  for (const GraphLink& link : {GraphLink{2, 1, Pose2(), 0, 0.1}, GraphLink{2, 1, Pose2(), 0.1, -1},
+                                GraphLink{2, 1, Pose2(), nan, 0.1}, GraphLink{2, 1, Pose2(nan, 0, 0), 0.1, 0.1}})
+    EXPECT_THAT(all.join("b", link), test::Fails(Errc::kInvalidArgument));
+  EXPECT_FALSE(all.has("b"));
+}
+
+/// Robots drive, join anywhere and leave, in any order: ids stay a count, edges fit the poses, links hold.
+TEST(GraphUnion, StaysConsistentWhateverRobotsDo) {
+  std::mt19937_64 random(7);
+  const std::vector<std::string> robots{"a", "b", "c", "d", "e"};
+  for (int round = 0; round < 30; ++round) {
+    GraphUnion all;
+    std::map<std::string, int> driven;
+    std::map<std::string, Pose2> T_slam_first;
+    for (const std::string& robot : robots) {
+      T_slam_first[robot] = Pose2(normal(random, 9), normal(random, 9), normal(random, 2));
+      all.update(robot, straight(robot, driven[robot] = 2, T_slam_first[robot]));
+    }
+    int generation = 0;
+    for (int step = 0; step < 60; ++step) {
+      const std::string& robot = robots[uniform_index(random, robots.size())];
+      const double what = uniform01(random);
+      if (what < 0.4) {
+        all.update(robot, straight(robot, ++driven[robot], T_slam_first[robot]));
+      } else if (what < 0.8) {
+        const auto nodes = all.graph().nodes.size();
+        const GraphLink link{static_cast<int>(uniform_index(random, nodes)),
+                             static_cast<int>(uniform_index(random, static_cast<std::uint64_t>(driven[robot]))),
+                             Pose2(normal(random, 1), normal(random, 1), normal(random, 1)), 0.1, 0.1};
+        ASSERT_THAT(all.join(robot, link), test::IsOk());
+      } else {
+        all.leave(robot);
+      }
+      const PoseGraph graph = all.graph();
+      expect_consistent(graph);
+      std::map<std::string, int> counted;
+      for (const PoseNode& node : graph.nodes) ++counted[node.robot];
+      for (const std::string& name : robots) EXPECT_EQ(counted[name], all.has(name) ? driven[name] : 0) << name;
+      EXPECT_GE(all.generation(), generation);
+      generation = all.generation();
+    }
+  }
 }
 
 }  // namespace
