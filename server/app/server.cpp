@@ -116,10 +116,11 @@ struct Server::Impl {
     return Ok{};
   }
 
-  Result<std::shared_ptr<const Snapshot>> look_back(std::int64_t at) {
+  Result<Past> look_back(std::int64_t at) {
     const auto past = options.make_replay_engine();
-    if (auto replayed = replay_log(*store, *past, Origin::kLive, at); !replayed) return replayed.error();
-    return settled(*past);
+    const auto replayed = replay_log(*store, *past, Origin::kLive, at);
+    if (!replayed) return replayed.error();
+    return Past{settled(*past), replayed->view()};
   }
 
   /// In the order in which nobody is left waiting for somebody who is gone.

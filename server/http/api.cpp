@@ -14,14 +14,6 @@ constexpr std::size_t kSmallBody = 16 * 1024;
 constexpr std::size_t kCommandBody = 4 * 1024 * 1024;
 constexpr int kMostEvents = 1000;
 
-std::int64_t query_number(const Request& request, std::string_view key, std::int64_t otherwise) {
-  const auto it = request.query.find(key);
-  if (it == request.query.end()) return otherwise;
-  std::int64_t value = 0;
-  const auto [end, failed] = std::from_chars(it->second.data(), it->second.data() + it->second.size(), value);
-  return failed == std::errc() && end == it->second.data() + it->second.size() ? value : otherwise;
-}
-
 Json identity_json(const Identity& who) {
   return {{"device", who.device}, {"role", to_string(who.role)}, {"name", who.name}};
 }
@@ -32,7 +24,7 @@ Response pair(Access& access, const Request& request) {
   Fields f(*json, "pair");
   PairRequest asked;
   if (f.has("pin")) asked.pin = f.text("pin", 16);
-  asked.name = f.text("name", 64);
+  asked.name = f.text("name", 40);
   const auto role = role_of(f.text("role", 32));
   if (!role) f.complain(".role must be observer, firefighter or commander");
   if (!f.ok()) return error_response(f.error());
@@ -60,8 +52,8 @@ Json event_json(const Event& event) {
 }
 
 Response events(Store& store, const Request& request) {
-  const std::int64_t from = std::max<std::int64_t>(1, query_number(request, "from", 1));
-  const auto limit = std::clamp<std::int64_t>(query_number(request, "limit", 200), 1, kMostEvents);
+  const std::int64_t from = std::max<std::int64_t>(1, query_number(request, "from").value_or(1));
+  const auto limit = std::clamp<std::int64_t>(query_number(request, "limit").value_or(200), 1, kMostEvents);
   const auto found = store.events(from, static_cast<int>(limit));
   if (!found) return error_response(found.error());
   Json list = Json::array();
@@ -82,16 +74,17 @@ Response events_as_lines(Store& store) {
 }
 
 Response snapshot_at(const ApiParts& parts, const Request& request) {
-  const std::int64_t at = query_number(request, "at", -1);
+  const std::int64_t at = query_number(request, "at").value_or(-1);
   if (at < 0) return error_response(400, "invalid_argument", "at must be the number of an event");
   if (!parts.snapshot_at) return error_response(404, "not_found", "this server keeps no past");
-  const auto snapshot = parts.snapshot_at(at);
-  if (!snapshot) return error_response(snapshot.error());
+  const auto past = parts.snapshot_at(at);
+  if (!past) return error_response(past.error());
   Json tables = Json::object();
   for (std::size_t i = 0; i < kPartCount; ++i) {
     const auto part = static_cast<Part>(i);
     Json& table = tables[to_string(part)] = Json::object();
-    for (const auto& [id, text] : part_table(part, **snapshot, {})) table[id] = Json::parse(text, nullptr, false);
+    for (const auto& [id, text] : part_table(part, *past->snapshot, past->view))
+      table[id] = Json::parse(text, nullptr, false);
   }
   return json_response({{"at", at}, {"parts", std::move(tables)}});
 }

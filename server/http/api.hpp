@@ -14,6 +14,12 @@
 
 namespace smokemap::server {
 
+/// The state as it was once.
+struct Past {
+  std::shared_ptr<const Snapshot> snapshot;  ///< never null
+  ServerView view;
+};
+
 /// What the requests below /api are made of. References outlive the service.
 struct ApiParts {
   Access& access;
@@ -25,7 +31,7 @@ struct ApiParts {
   std::shared_ptr<const Clock> clock;
   std::uint32_t epoch = 0;
   /// The state after event `at`, from a replay of its own; absent = not offered.
-  std::function<Result<std::shared_ptr<const Snapshot>>(std::int64_t at)> snapshot_at;
+  std::function<Result<Past>(std::int64_t at)> snapshot_at;
 };
 
 /// Adds every request of docs/wire.md, section 1.

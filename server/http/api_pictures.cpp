@@ -1,12 +1,13 @@
 #include "server/http/api_pictures.hpp"
 
-#include <charconv>
+#include "server/wire/words.hpp"
 
 namespace smokemap::server {
 namespace {
 
 constexpr std::size_t kMostPictureBytes = 25 * 1024 * 1024;
 constexpr std::size_t kMostReadBody = 16 * 1024;
+constexpr std::int64_t kMostPages = 10'000;
 
 std::string parameter(const Request& request, std::string_view name) {
   const auto it = request.path_parameters.find(name);
@@ -19,12 +20,9 @@ std::string query_text(const Request& request, std::string_view name) {
 }
 
 Response upload_plan(const ApiParts& p, const Request& request) {
-  int page = 1;
-  const std::string asked = query_text(request, "page");
-  if (!asked.empty() &&
-      (std::from_chars(asked.data(), asked.data() + asked.size(), page).ec != std::errc() || page < 1))
-    return error_response(400, "invalid_argument", "page must be a number from 1");
-  const auto picture = p.pictures.clean(request.body, page);
+  const std::int64_t page = query_text(request, "page").empty() ? 1 : query_number(request, "page").value_or(0);
+  if (page < 1 || page > kMostPages) return error_response(400, "invalid_argument", "page must be a number from 1");
+  const auto picture = p.pictures.clean(request.body, static_cast<int>(page));
   if (!picture) return error_response(picture.error());
   const auto sha = p.files.put(picture->bytes);
   if (!sha) return error_response(sha.error());
@@ -91,11 +89,9 @@ Response read_plan(const ApiParts& p, const Request& request) {
 Response read_sketch(const ApiParts& p, const Request& request) {
   const auto reading = p.pictures.read_sketch_photo(request.body);
   if (!reading) return error_response(reading.error());
-  constexpr const char* kKinds[] = {"wall", "door", "note"};
   Json strokes = Json::array();
   for (const Stroke& stroke : reading->strokes)
-    strokes.push_back(
-        {{"points", points_json(stroke.points_px, 0.01)}, {"kind", kKinds[static_cast<std::size_t>(stroke.kind)]}});
+    strokes.push_back({{"points", points_json(stroke.points_px, 0.01)}, {"kind", word_of(kStrokeWords, stroke.kind)}});
   return json_response({{"width", reading->width_px}, {"height", reading->height_px}, {"strokes", std::move(strokes)}});
 }
 

@@ -1,7 +1,8 @@
 #include "server/http/exports.hpp"
 
-#include <algorithm>
 #include <cstdio>
+
+#include "grids/occupancy_grid.hpp"
 
 namespace smokemap::server {
 namespace {
@@ -9,12 +10,9 @@ namespace {
 /// As map_server draws it: 254 free, 0 occupied, 205 unknown; row 0 is the highest y.
 std::string pgm_of(const OccupancyGrid& grid) {
   const GridFrame& frame = grid.frame();
+  const auto image = to_image(grid);
   std::string pgm = "P5\n" + std::to_string(frame.width_cells) + " " + std::to_string(frame.height_cells) + "\n255\n";
-  for (int y = frame.height_cells - 1; y >= 0; --y)
-    for (int x = 0; x < frame.width_cells; ++x) {
-      const int percent = grid.at({x, y});
-      pgm += static_cast<char>(percent < 0 ? 205 : 254 - std::min(100, percent) * 254 / 100);
-    }
+  pgm.append(image.ptr<char>(), frame.cell_count());  // whole rows without gaps
   return pgm;
 }
 

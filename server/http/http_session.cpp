@@ -65,7 +65,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     keep_alive_ = head.keep_alive();
     head_only_ = head.method() == http::verb::head;
     const auto request = request_of(head);
-    if (!request) return refuse(error_response(400, "corrupt", "the request's target is malformed"));
+    if (!request) return refuse(error_response(400, "corrupt", "the head of the request is malformed"));
     if (beast::websocket::is_upgrade(head)) return upgrade(*request);
     request_ = *request;
     if (parser_->content_length()) request_.content_length = *parser_->content_length();
@@ -184,6 +184,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                      : head.method() == http::verb::head ? Method::kHead
                      : head.method() == http::verb::post ? Method::kPost
                                                          : Method::kOther;
+    for (const http::field once : {http::field::host, http::field::origin, http::field::authorization})
+      if (head.count(once) > 1) return std::nullopt;  // two servers in a row could each believe another one
     if (!parse_target({head.target().data(), head.target().size()}, request)) return std::nullopt;
     request.host = head[http::field::host];
     request.origin = head[http::field::origin];

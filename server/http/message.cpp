@@ -1,5 +1,8 @@
 #include "server/http/message.hpp"
 
+#include <algorithm>
+#include <charconv>
+
 namespace smokemap::server {
 namespace {
 
@@ -89,6 +92,15 @@ std::optional<std::string> percent_decoded(std::string_view text) {
     decoded += c;
   }
   return decoded;
+}
+
+std::optional<std::int64_t> query_number(const Request& request, std::string_view key) {
+  const auto it = request.query.find(key);
+  if (it == request.query.end()) return std::nullopt;
+  const char *first = it->second.data(), *last = first + it->second.size();
+  std::int64_t value = 0;
+  const auto [end, failed] = std::from_chars(first, last, value);
+  return failed == std::errc() && end == last ? std::optional(value) : std::nullopt;
 }
 
 bool parse_target(std::string_view target, Request& request) {

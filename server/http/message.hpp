@@ -54,6 +54,8 @@ const std::vector<std::pair<std::string, std::string>>& security_headers();
 
 /// Percent-decoding; nothing for malformed escapes or NUL bytes.
 std::optional<std::string> percent_decoded(std::string_view text);
+/// A parameter of the query that is a whole number and nothing else.
+std::optional<std::int64_t> query_number(const Request& request, std::string_view key);
 /// Splits "/path?a=b" into decoded path and query; false for a malformed target.
 bool parse_target(std::string_view target, Request& request);
 

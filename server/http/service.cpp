@@ -65,11 +65,11 @@ Admission HttpService::admit(Request& request) const {
   if (auto refusal = refuse_foreign(request)) return refused(std::move(*refusal));
   const Method method = request.method == Method::kHead ? Method::kGet : request.method;
   const Route* route = nullptr;
-  bool path_known = false;
+  std::string allowed;  // methods that this path knows
   std::map<std::string, std::string, std::less<>> parameters;
   for (const Route& candidate : routes_) {
     if (!matches(candidate, request, parameters)) continue;
-    path_known = true;
+    allowed += (allowed.empty() ? "" : ", ") + std::string(candidate.method == Method::kGet ? "GET, HEAD" : "POST");
     if (candidate.method != method) continue;
     route = &candidate;
     request.path_parameters = parameters;
@@ -77,8 +77,11 @@ Admission HttpService::admit(Request& request) const {
   }
   Admission admission;
   if (!route) {
-    if (path_known || method != Method::kGet)
-      return refused(error_response(405, "invalid_argument", "not with this method"));
+    if (!allowed.empty() || method != Method::kGet) {
+      Response response = error_response(405, "invalid_argument", "not with this method");
+      response.headers.emplace_back("Allow", allowed.empty() ? "GET, HEAD" : allowed);
+      return refused(std::move(response));
+    }
     if (request.path.starts_with("/api/")) return refused(error_response(404, "not_found", "there is no such request"));
     return admission;
   }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <vector>
 
 namespace smokemap::server {
 namespace {
@@ -63,6 +64,39 @@ fs::path inside(const fs::path& root, const std::string& path) {
   return end == root.end() ? file : fs::path();
 }
 
+/// The items of a list in a header, without blanks around them.
+std::vector<std::string_view> items(std::string_view list) {
+  std::vector<std::string_view> found;
+  while (!list.empty()) {
+    std::string_view item = list.substr(0, list.find(','));
+    list.remove_prefix(std::min(list.size(), item.size() + 1));
+    item.remove_prefix(std::min(item.find_first_not_of(" \t"), item.size()));
+    item = item.substr(0, item.find_last_not_of(" \t") + 1);
+    if (!item.empty()) found.push_back(item);
+  }
+  return found;
+}
+
+/// "gzip" or "*" among the codings, and not with a weight of zero.
+bool takes_gzip(std::string_view accept_encoding) {
+  for (const std::string_view item : items(accept_encoding)) {
+    const std::string_view coding = item.substr(0, item.find_first_of("; \t"));
+    if (coding != "gzip" && coding != "*") continue;
+    const std::size_t weight = item.find("q=");
+    return weight == std::string_view::npos || item.find_first_of("123456789", weight) != std::string_view::npos;
+  }
+  return false;
+}
+
+/// Weak comparison (RFC 9110, 13.1.2): a proxy that packs answers makes tags weak.
+bool any_is(std::string_view if_none_match, std::string_view tag) {
+  for (std::string_view item : items(if_none_match)) {
+    if (item.starts_with("W/")) item.remove_prefix(2);
+    if (item == "*" || "W/" + std::string(item) == tag) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string media_type_of(std::string_view path) {
@@ -81,7 +115,7 @@ std::optional<StaticFiles::Entry> StaticFiles::load(const std::string& file) {
   if (!fs::is_regular_file(file, failed)) return std::nullopt;
   const auto size = fs::file_size(file, failed);
   const auto time = fs::last_write_time(file, failed).time_since_epoch().count();
-  const std::string stamp = "\"" + std::to_string(time) + "-" + std::to_string(size) + "\"";
+  const std::string stamp = "W/\"" + std::to_string(time) + "-" + std::to_string(size) + "\"";
   const std::lock_guard lock(mutex_);
   if (const auto it = cache_.find(file); it != cache_.end() && it->second.stamp == stamp) return it->second;
   std::ifstream stream(file, std::ios::binary);
@@ -107,15 +141,15 @@ Response StaticFiles::get(const Request& request) {
   if (!entry) return error_response(404, "not_found", "there is no such page");
   Response response;
   response.content_type = media_type_of(file.string());
-  const bool hashed = asked.starts_with("/assets/");
+  const bool hashed = file.string().starts_with(root_ + "/assets/");  // the file, not what was asked for
   response.headers = {{"Cache-Control", hashed ? "public, max-age=31536000, immutable" : "no-cache"},
                       {"ETag", entry->stamp},
                       {"Vary", "Accept-Encoding"}};
-  if (request.if_none_match == entry->stamp) {
+  if (any_is(request.if_none_match, entry->stamp)) {
     response.status = 304;
     return response;
   }
-  const bool gzip = entry->gzipped && request.accept_encoding.find("gzip") != std::string::npos;
+  const bool gzip = entry->gzipped && takes_gzip(request.accept_encoding);
   if (gzip) response.headers.emplace_back("Content-Encoding", "gzip");
   response.body = gzip ? entry->gzipped : entry->plain;
   return response;

@@ -18,7 +18,7 @@ class StaticFiles {
 
  private:
   struct Entry {
-    std::string stamp;  ///< time and size of the file; also the ETag
+    std::string stamp;  ///< time and size of the file; also the ETag, weak: it is the same packed and plain
     SharedBytes plain;
     SharedBytes gzipped;  ///< null when that is no smaller
   };

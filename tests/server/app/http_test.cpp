@@ -226,5 +226,26 @@ TEST(Events, AreListedAndExportedAndLookedBackTo) {
   EXPECT_EQ(client.ask("GET", "/api/export/passwd", "", token).status, 404);
 }
 
+TEST(Events, APastWithoutAnchorsAndWithoutThePlansPictureWasShown) {
+  RunningServer running;
+  const std::string token = RunningServer::bearer(running.pair("commander"));
+  RawClient client(running.port());
+  const auto command = [&](const std::string& id, const std::string& name, const std::string& data) {
+    return client
+        .ask("POST", "/api/commands", R"({"id":")" + id + R"(","name":")" + name + R"(","data":)" + data + "}", token)
+        .status;
+  };
+  ASSERT_EQ(command("c1", "add_anchor", R"({"id":"a1","px":[1,2],"map":[3,4]})"), 200);
+  ASSERT_EQ(command("c2", "add_anchor", R"({"id":"a2","px":[5,6],"map":[7,8]})"), 200);
+  ASSERT_EQ(command("c3", "remove_anchor", R"({"id":"a1"})"), 200);
+  const auto anchors_at = [&](int seq) {
+    return Json::parse(
+        client.ask("GET", "/api/snapshot?at=" + std::to_string(seq), "", token).body)["parts"]["anchors"];
+  };
+  EXPECT_EQ(anchors_at(1), (Json{{"a1", {{"px", {1.0, 2.0}}, {"map", {3.0, 4.0}}}}}));
+  EXPECT_EQ(anchors_at(2).size(), 2u);
+  EXPECT_TRUE(anchors_at(3).contains("a2") && !anchors_at(3).contains("a1"));
+}
+
 }  // namespace
 }  // namespace smokemap::server

@@ -242,5 +242,49 @@ TEST(Uploads, AreTakenOnlyAFewAtATime) {
   }));
 }
 
+TEST(Connection, ASecondHostOrOriginWasOverlooked) {
+  RunningServer running;
+  const std::string host = "Host: 127.0.0.1:" + std::to_string(running.port()) + "\r\n";
+  const auto status_of = [&](const std::string& more) {
+    RawClient client(running.port());
+    client.send("GET /api/health HTTP/1.1\r\n" + host + more + "\r\n");
+    return client.answer().status;
+  };
+  EXPECT_EQ(status_of(""), 200);
+  EXPECT_EQ(status_of("Host: evil.example\r\n"), 400);
+  EXPECT_EQ(status_of(host), 400) << "even the same one again";
+  EXPECT_EQ(status_of("Origin: http://127.0.0.1:" + std::to_string(running.port()) + "\r\nOrigin: null\r\n"), 400);
+  EXPECT_EQ(status_of("Authorization: Bearer a\r\nAuthorization: Bearer b\r\n"), 400);
+}
+
+TEST(Connection, AnswersMethodsThatNobodyKnowsWithoutLosingStep) {
+  RunningServer running;
+  RawClient client(running.port());
+  for (const char* method : {"PUT", "DELETE", "PATCH", "OPTIONS", "TRACE", "BREW", "get"}) {
+    client.send(head(client, method, "/api/health"));
+    const auto answer = client.answer();
+    EXPECT_EQ(answer.status, 405) << method;
+    EXPECT_EQ(answer.headers.at("allow"), "GET, HEAD") << method;
+  }
+  EXPECT_EQ(client.ask("GET", "/api/health").status, 200);
+}
+
+TEST(Connection, RefusesBodiesThatPretendInChunks) {
+  RunningServer running;
+  const auto status_of = [&](const std::string& chunks, const std::string& target = "/api/pair") {
+    RawClient client(running.port());
+    client.send(head(client, "POST", target, "Transfer-Encoding: chunked\r\n") + chunks);
+    return client.answer().status;
+  };
+  EXPECT_EQ(status_of("zz\r\nx\r\n0\r\n\r\n"), 400) << "no number";
+  EXPECT_EQ(status_of("-5\r\nhello\r\n0\r\n\r\n"), 400);
+  EXPECT_EQ(status_of("3\r\nhello\r\n0\r\n\r\n"), 400) << "longer than it says";
+  EXPECT_GE(status_of("ffffffffffffffff\r\nx"), 400) << "as long as all memory";
+  EXPECT_EQ(status_of("4e20\r\n" + std::string(0x4e20, 'x') + "\r\n0\r\n\r\n"), 413) << "20 000 of 16 384 bytes";
+  std::string trickle;
+  for (int i = 0; i < 17'000; ++i) trickle += "1\r\nx\r\n";
+  EXPECT_EQ(status_of(trickle + "0\r\n\r\n"), 413) << "and the same in small bites";
+}
+
 }  // namespace
 }  // namespace smokemap::server

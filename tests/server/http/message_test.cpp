@@ -3,12 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <set>
 
 #include "core/random.hpp"
+#include "recording/map_server.hpp"
 #include "server/http/exports.hpp"
 #include "tests/support/example_snapshot.hpp"
+#include "tests/support/result_matchers.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace smokemap::server {
 namespace {
@@ -148,6 +152,72 @@ TEST(WallExports, CarryStateAndConfidenceOfEveryWall) {
     EXPECT_NEAR(feature["properties"]["confidence"].get<double>(), wall.confidence, 1e-3);
   }
   EXPECT_EQ(states, (std::set<std::string>{"confirmed", "missing", "new"}));
+}
+
+TEST(QueryNumbers, AreWholeNumbersAndNothingElse) {
+  const auto number = [](const std::string& text) {
+    Request request;
+    request.query["n"] = text;
+    return query_number(request, "n");
+  };
+  EXPECT_EQ(number("0"), 0);
+  EXPECT_EQ(number("-7"), -7);
+  EXPECT_EQ(number("9223372036854775807"), 9223372036854775807);
+  for (const char* text : {"", " 1", "1 ", "2abc", "+1", "0x1", "1.5", "1e3", "9223372036854775808", "--1"})
+    EXPECT_EQ(number(text), std::nullopt) << text;
+  EXPECT_EQ(query_number(Request{}, "n"), std::nullopt);
+}
+
+TEST(Targets, SplitAsManyParametersAsThereAre) {
+  std::mt19937_64 random(6);
+  for (int i = 0; i < 200; ++i) {
+    std::map<std::string, std::string> sent;
+    std::string target = percent_encoded("/path " + random_bytes(random, 10)) + "?";
+    target.replace(0, 3, "/");  // the first slash is no part of a name
+    for (std::uint64_t n = uniform_index(random, 6); n > 0; --n) {
+      const std::string key = "k" + std::to_string(n), value = random_bytes(random, 12);
+      sent[key] = value;
+      target += key + "=" + percent_encoded(value) + "&";
+    }
+    Request request;
+    ASSERT_TRUE(parse_target(target, request)) << target;
+    EXPECT_EQ(request.query.size(), sent.size());
+    for (const auto& [key, value] : sent) EXPECT_EQ(request.query.at(key), value);
+  }
+}
+
+TEST(Targets, OfOtherFormsAreNoneOfOurs) {
+  Request request;
+  for (const char* target : {"*", "http://127.0.0.1/", "127.0.0.1:80", "?a=1", "#", " /"})
+    EXPECT_FALSE(parse_target(target, request)) << target;
+  ASSERT_TRUE(parse_target("/?&&=&a=&=b", request));
+  EXPECT_EQ(request.path, "/");
+  EXPECT_EQ(request.query.at("a"), "");
+  EXPECT_EQ(request.query.at(""), "b");
+}
+
+TEST(MapExports, AreReadBackByTheReaderOfRosMaps) {
+  const test::TemporaryFolder folder;
+  Snapshot snapshot = test::example_snapshot();
+  auto grid = std::make_shared<OccupancyGrid>(GridFrame{0.05, Eigen::Vector2d(-1.25, 3.5), 23, 17});
+  std::mt19937_64 random(7);
+  for (auto& cell : grid->cells()) cell = static_cast<std::int8_t>(static_cast<int>(uniform_index(random, 102)) - 1);
+  snapshot.sensed = grid;
+  for (const char* name : {"map.pgm", "map.yaml"})
+    std::ofstream(folder.path() + "/" + name, std::ios::binary) << *export_file(name, snapshot).body;
+  const auto read = read_map(folder.path() + "/map.yaml");
+  ASSERT_THAT(read, test::IsOk());
+  ASSERT_EQ(read->frame().width_cells, 23);
+  ASSERT_EQ(read->frame().height_cells, 17);
+  EXPECT_NEAR(read->frame().resolution_m, 0.05, 1e-9);
+  EXPECT_NEAR((read->frame().origin - grid->frame().origin).norm(), 0, 1e-6);
+  for (std::size_t i = 0; i < grid->cells().size(); ++i) {
+    const int sent = grid->cells()[i], got = read->cells()[i];
+    const bool free = sent >= 0 && sent <= 18, occupied = sent >= 67, unknown = sent < 0;
+    EXPECT_TRUE(!unknown || got == -1) << got;
+    EXPECT_TRUE(!free || got == 0) << sent << " became " << got;
+    EXPECT_TRUE(!occupied || got == 100) << sent << " became " << got;
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <future>
 #include <stdexcept>
 
@@ -145,6 +146,118 @@ TEST(Exports, SayStatesAndUncertainty) {
   EXPECT_NE(export_file("map.yaml", snapshot).body->find("resolution: 0.05"), std::string::npos);
   EXPECT_EQ(Json::parse(*export_file("walls.geojson", snapshot).body)["features"].size(), 3u);
   EXPECT_EQ(export_file("../smokemap.db", snapshot).status, 404);
+}
+
+TEST(Routes, SayWhichMethodsAPathTakes) {
+  Parts parts;
+  parts.service->add({Method::kGet, "/api/things/{id}", std::nullopt, 0, false, saying("get ")});
+  parts.service->add({Method::kPost, "/api/things/{id}", std::nullopt, 10, false, saying("post ")});
+  parts.service->add({Method::kPost, "/api/upload", std::nullopt, 10, false, saying("up")});
+  const auto allowed = [&](Method method, const std::string& path) {
+    const Response response = parts.answer(parts.request(method, path));
+    for (const auto& [name, value] : response.headers)
+      if (name == "Allow") return std::to_string(response.status) + " " + value;
+    return std::to_string(response.status);
+  };
+  EXPECT_EQ(allowed(Method::kOther, "/api/things/7"), "405 GET, HEAD, POST");
+  EXPECT_EQ(allowed(Method::kGet, "/api/upload"), "405 POST");
+  EXPECT_EQ(allowed(Method::kHead, "/api/upload"), "405 POST");
+  EXPECT_EQ(allowed(Method::kPost, "/index.html"), "405 GET, HEAD") << "a page";
+  EXPECT_EQ(allowed(Method::kPost, "/api/things/7"), "200");
+}
+
+TEST(Routes, KeepWhatStandsBetweenTheSlashes) {
+  Parts parts;
+  parts.service->add(
+      {Method::kGet, "/api/{a}/x/{b}", std::nullopt, 0, false, [](const Request& r, const Respond& respond) {
+         respond(bytes_response(r.path_parameters.at("a") + "|" + r.path_parameters.at("b"), "text/plain"));
+       }});
+  EXPECT_EQ(*parts.answer(parts.request(Method::kGet, "/api/1/x/2 3")).body, "1|2 3");
+  EXPECT_EQ(*parts.answer(parts.request(Method::kGet, "/api/../x/..")).body, "..|..") << "a name like any other";
+  for (const char* path : {"/api/1/x", "/api/1/x/2/", "//api/1/x/2", "/api//x", "/api/1/X/2", "/API/1/x/2"})
+    EXPECT_EQ(parts.answer(parts.request(Method::kGet, path)).status, 404) << path;
+}
+
+TEST(Tokens, AreTakenInOneFormOnly) {
+  Parts parts;
+  parts.service->add({Method::kGet, "/api/x", Role::kObserver, 0, false, saying("x")});
+  const std::string token = parts.access->pair({"123456", "Anna", Role::kObserver, false})->token;
+  const auto status = [&](const std::string& authorization) {
+    Request request = parts.request(Method::kGet, "/api/x");
+    request.authorization = authorization;
+    return parts.answer(request).status;
+  };
+  EXPECT_EQ(status("Bearer " + token), 200);
+  for (const std::string& other :
+       {std::string(), token, "bearer" + token, "Basic " + token, "Bearer  " + token, "Bearer " + token + " ",
+        "Bearer " + token.substr(1), std::string("Bearer "), "Bearer " + token + token})
+    EXPECT_EQ(status(other), 401) << other;
+}
+
+TEST(Hosts, AreOursToTheLetterForEveryMethodAndEvenForSockets) {
+  Parts parts;
+  parts.service->add({Method::kGet, "/api/x", std::nullopt, 0, false, saying("x")});
+  for (const char* host : {"127.0.0.1:80", "127.0.0.1", "localhost", "LOCALHOST:80", "[::1]:80"}) {
+    Request request = parts.request(Method::kGet, "/api/x");
+    request.host = host;
+    EXPECT_EQ(parts.answer(request).status, 200) << host;
+  }
+  for (const char* host : {"", "127.0.0.1:81", "127.0.0.1.evil.example", "evil.example", "localhost:80:80",
+                           "localhost.", " localhost", "localhost/", "127.1", "0x7f000001", "[::1", "::1"}) {
+    Request request = parts.request(Method::kGet, "/api/x");
+    request.host = host;
+    EXPECT_EQ(parts.answer(request).status, 421) << host;
+    request.path = "/api/live";
+    EXPECT_EQ(parts.service->refuse_socket(request)->status, 421) << host;
+  }
+}
+
+TEST(Origins, AreThePagesOwnOrAbsent) {
+  Parts parts;
+  parts.service->add({Method::kPost, "/api/x", std::nullopt, 10, false, saying("x")});
+  const auto status = [&](const std::string& origin) {
+    Request request = parts.request(Method::kPost, "/api/x");
+    request.origin = origin;
+    return parts.answer(request).status;
+  };
+  for (const char* own : {"", "http://127.0.0.1:80", "https://127.0.0.1:80", "HTTP://127.0.0.1:80"})
+    EXPECT_EQ(status(own), 200) << own;
+  for (const char* foreign :
+       {"null", "http://127.0.0.1", "http://localhost:80", "http://127.0.0.1:80/", "http://127.0.0.1:800",
+        "http://evil.example", "file://", "http://127.0.0.1:80@evil.example", "ftp://127.0.0.1:80"})
+    EXPECT_EQ(status(foreign), 403) << foreign;
+}
+
+TEST(LargeBodies, OfUnknownLengthCountAsTheMostTheyMayBecome) {
+  Parts parts;
+  parts.service->add({Method::kPost, "/api/upload", std::nullopt, 1000, false, saying("ok")});
+  parts.service->add({Method::kPost, "/api/small", std::nullopt, 100, false, saying("ok")});
+  const auto permit = [&](const std::string& path, std::optional<std::uint64_t> length) {
+    Request request = parts.request(Method::kPost, path);
+    request.content_length = length;
+    return parts.service->admit(request).permit.use_count() > 0;
+  };
+  EXPECT_TRUE(permit("/api/upload", std::nullopt)) << "chunked";
+  EXPECT_TRUE(permit("/api/upload", 101));
+  EXPECT_FALSE(permit("/api/upload", 100));
+  EXPECT_FALSE(permit("/api/small", std::nullopt)) << "it cannot become large";
+  EXPECT_FALSE(permit("/api/small", std::uint64_t{1} << 60)) << "its length is refused elsewhere";
+}
+
+TEST(WorkerPool, RunsWhatWasTakenOnceAndInOrderAndSurvivesWhatThrows) {
+  std::vector<int> done;
+  std::promise<void> last;
+  WorkerPool pool(1, 200);
+  for (int i = 0; i < 100; ++i)
+    ASSERT_TRUE(pool.post([&, i] {
+      done.push_back(i);
+      if (i == 99) last.set_value();
+      if (i % 10 == 0) throw std::runtime_error("work that fails");
+    }));
+  last.get_future().wait();
+  pool.stop();
+  ASSERT_EQ(done.size(), 100u);
+  EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
 }
 
 }  // namespace
