@@ -66,6 +66,8 @@ Result<FileStore> FileStore::open(const std::string& folder) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) return fail(Errc::kIo, "the folder " + folder + " cannot be made: " + failed.message());
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed))  // what a crash left half written
+    if (entry.path().extension() == ".part") std::filesystem::remove(entry.path(), failed);
   return FileStore(folder);
 }
 
@@ -74,7 +76,7 @@ Result<std::string> FileStore::put(std::string_view bytes) const {
   const std::string sha = sha256_hex(bytes);
   const std::string path = folder_ + "/" + sha;
   std::error_code ignored;
-  if (std::filesystem::exists(path, ignored)) return sha;
+  if (std::filesystem::file_size(path, ignored) == bytes.size() && get(sha)) return sha;
   const std::string part = path + "." + std::to_string(::getpid()) + "." + std::to_string(counter++) + ".part";
   {
     const FileDescriptor file(part, O_WRONLY | O_CREAT | O_TRUNC);
@@ -84,7 +86,11 @@ Result<std::string> FileStore::put(std::string_view bytes) const {
       return error;
     }
   }
-  if (std::rename(part.c_str(), path.c_str()) != 0) return io_error(path);
+  if (std::rename(part.c_str(), path.c_str()) != 0) {
+    const Error error = io_error(path);
+    std::filesystem::remove(part, ignored);
+    return error;
+  }
   const FileDescriptor folder(folder_, O_RDONLY | O_DIRECTORY);
   if (!folder.ok() || !folder.sync()) return io_error(folder_);
   return sha;

@@ -15,9 +15,10 @@ bool is_sha256_hex(std::string_view text);
 /// synced and renamed. Names never come from outside. Thread-safe.
 class FileStore {
  public:
+  /// Clears away what a crash left half written. One process owns a folder.
   static Result<FileStore> open(const std::string& folder);
 
-  /// Returns the hash. Storing the same bytes again is free.
+  /// Returns the hash. The same bytes again write nothing, unless those that are there were damaged.
   Result<std::string> put(std::string_view bytes) const;
   /// kNotFound; kCorrupt when the bytes no longer have their hash.
   Result<std::string> get(std::string_view sha256) const;
