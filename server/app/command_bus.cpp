@@ -9,6 +9,7 @@ namespace smokemap::server {
 namespace {
 
 constexpr int kPage = 500;
+constexpr const char* kUrgent = "emergency_stop";
 constexpr JsonLimits kStoredLimits{64 * 1024 * 1024, 64};
 
 CommandReply refusal(const std::string& id, const Error& error, std::optional<std::int64_t> seq = std::nullopt) {
@@ -51,9 +52,15 @@ CommandMessage kept_on_plan(const EnginePort& engine, CommandMessage message) {
   return message;
 }
 
+/// As the log keeps it: "done", or "refused: not_found: no robot called r9".
+std::string outcome_of(const Result<Ok>& applied) {
+  if (applied) return "done";
+  return std::string("refused: ") + to_string(applied.error().code) + ": " + applied.error().message;
+}
+
 bool is_refused(const Event& event) { return event.outcome.starts_with("refused"); }
 
-/// "refused: not_found: no robot called r9" -> code and message.
+/// What outcome_of wrote -> code and message.
 CommandReply reply_of(const Event& event) {
   CommandReply reply{event.command_id, event.seq, "", ""};
   if (!is_refused(event)) return reply;
@@ -131,15 +138,14 @@ void CommandBus::stop() {
 }
 
 void CommandBus::submit(const Identity& who, CommandMessage message, Reply reply) {
-  const bool urgent = message.name == "emergency_stop";
+  const auto is_urgent = [](const Job& job) { return job.message.name == kUrgent; };
+  const bool urgent = message.name == kUrgent;
   {
     const std::lock_guard lock(mutex_);
     if (!stopping_ && (urgent || waiting_.size() < limits_.most_waiting)) {
-      Job job{who, std::move(message), std::move(reply)};
-      if (urgent)
-        waiting_.push_front(std::move(job));
-      else
-        waiting_.push_back(std::move(job));
+      // Stops and releases overtake everything but each other: a release that waits must not undo a later stop.
+      const auto place = urgent ? std::find_if_not(waiting_.begin(), waiting_.end(), is_urgent) : waiting_.end();
+      waiting_.insert(place, Job{who, std::move(message), std::move(reply)});
       wake_.notify_one();
       return;
     }
@@ -189,9 +195,7 @@ CommandReply CommandBus::carry_out(const Job& asked) {
 
 CommandReply CommandBus::apply_stored(std::int64_t seq, const Job& job, const Command& command) {
   const auto applied = engine_.apply(command, Origin::kLive);
-  const std::string outcome =
-      applied ? "done" : std::string("refused: ") + to_string(applied.error().code) + ": " + applied.error().message;
-  (void)store_.set_outcome(seq, outcome).ok();  // the log has the command; replay decides anew
+  (void)store_.set_outcome(seq, outcome_of(applied)).ok();  // the log has the command; replay decides anew
   if (!applied) return refusal(job.message.id, applied.error(), seq);
   if (keeper_.note(command, job.message.data)) listener_(keeper_.view());
   return {job.message.id, seq, "", ""};
@@ -203,7 +207,7 @@ CommandReply CommandBus::stop_robots(const Job& job, const Command& command) {
   if (earlier && *earlier) return reply_of(**earlier);
   const std::int64_t now_ms = clock_->now() / 1'000'000;
   const auto seq = store_.append({0, now_ms, job.who, job.message.id, job.message.name, to_text(job.message.data), ""});
-  if (seq) (void)store_.set_outcome(*seq, applied ? "done" : "refused: " + applied.error().message).ok();
+  if (seq) (void)store_.set_outcome(*seq, outcome_of(applied)).ok();
   if (!applied) return refusal(job.message.id, applied.error(), seq ? std::optional(*seq) : std::nullopt);
   return {job.message.id, seq ? *seq : 0, "", ""};
 }

@@ -9,6 +9,8 @@
 #include <memory>
 #include <mutex>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "tests/support/eventually.hpp"
 #include "tests/support/failing_vfs.hpp"
@@ -253,6 +255,29 @@ TEST(Replay, GoesOverLogsOfManyPages) {
   test::FakeEngine engine;
   ASSERT_THAT(replay_log(*store, engine, Origin::kHistory), test::IsOk());
   EXPECT_EQ(engine.count(), 1203u);
+}
+
+TEST(CommandBus, AReleaseThatWaitedUndidTheStopThatCameAfterIt) {
+  const test::TemporaryFolder folder;
+  Site site(*Store::open(folder.path()));
+  std::vector<std::future<CommandReply>> answers;
+  const auto submit = [&](CommandMessage message) {
+    auto answered = std::make_shared<std::promise<CommandReply>>();
+    answers.push_back(answered->get_future());
+    site.bus->submit(kAnna, std::move(message), [answered](const CommandReply& reply) { answered->set_value(reply); });
+  };
+  submit(poi_message("p1"));
+  submit(stop_all("release", false));
+  submit(poi_message("p2"));
+  submit(stop_all("stop", true));
+  site.bus->start();  // all of them wait by now
+  for (auto& answer : answers) EXPECT_TRUE(answer.get().done());
+  std::vector<std::string> order;
+  for (const auto& [command, origin] : site.engine.applied()) {
+    if (const auto* stop = std::get_if<EmergencyStop>(&command)) order.push_back(stop->engaged ? "stop" : "release");
+    if (const auto* place = std::get_if<PlacePoi>(&command)) order.push_back(place->poi.id);
+  }
+  EXPECT_EQ(order, (std::vector<std::string>{"release", "stop", "p1", "p2"}));
 }
 
 }  // namespace
