@@ -70,7 +70,8 @@ void RobotDrive::step(const SegmentWorld& world, Stamp dt, Stamp now) {
   Pose2 next = advanced(T_world_robot_, way, turn);
   const double here = world.clearance_m(T_world_robot_.translation(), params_.radius_m + 2 * kFreeAgain);
   const double there = world.clearance_m(next.translation(), params_.radius_m + 2 * kFreeAgain);
-  if (way != 0 && there < params_.radius_m && there < here + 1e-9) {  // nearer to a wall than the disc allows
+  const bool too_near = there < params_.radius_m && there < here + 1e-9;  // nearer to a wall than the disc allows
+  if (way != 0 && (too_near || !world.sees(T_world_robot_.translation(), next.translation()))) {
     bumps_ += !touching_;
     touching_ = true;
     speed_ = way = 0;

@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "core/random.hpp"
 #include "simulation/path_driver.hpp"
 #include "simulation/random_building.hpp"
+#include "simulation/wall_solids.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/result_matchers.hpp"
 
@@ -160,6 +165,120 @@ TEST(RandomBuilding, RefusesABuildingThatCannotBe) {
   RandomBuildingParams params;
   params.depth_m = 5;
   EXPECT_THAT(random_building(params, random), test::Fails(Errc::kInvalidArgument));
+}
+
+/// Nearest border of any thick wall along the ray: what a world made of their union must show from a free place.
+double nearest_solid(const std::vector<WallSolid>& solids, const Point2& origin, const Point2& direction) {
+  double nearest = 1e9;
+  for (const WallSolid& solid : solids) {
+    const Polygon quad = solid.quad();
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto hit = intersection({origin, origin + 200 * direction}, {quad[k], quad[(k + 1) % 4]});
+      if (hit) nearest = std::min(nearest, (*hit - origin).norm());
+    }
+  }
+  return nearest;
+}
+
+TEST(BuildWorld, ShowsTheNearestThickWallFromEveryFreePlace) {
+  for (std::uint64_t seed = 70; seed < 74; ++seed) {
+    std::mt19937_64 random(seed);
+    auto plan = random_building({}, random);
+    ASSERT_THAT(plan, test::IsOk());
+    for (PlanDoor& door : plan->doors) door.has_leaf = false;
+    const std::vector<WallSolid> solids = wall_solids(*plan);
+    const SegmentWorld world = build_world(*plan);
+    for (int i = 0; i < 400; ++i) {
+      const auto room = static_cast<int>(uniform_index(random, plan->rooms.size()));
+      const Point2 origin = centroid(plan->outline(room));
+      const double angle = uniform(random, -kPi, kPi);
+      const Point2 direction(std::cos(angle), std::sin(angle));
+      const double expected = nearest_solid(solids, origin, direction);
+      const auto hit = world.cast(origin, direction, 150);
+      if (expected > 150) {
+        EXPECT_FALSE(hit) << "out through two doors";
+      } else {
+        ASSERT_TRUE(hit);
+        EXPECT_NEAR(hit->range_m, expected, 1e-4);
+      }
+    }
+  }
+}
+
+TEST(FloorPlan, KnowsTheRoomsOnBothSidesOfEveryWall) {
+  for (std::uint64_t seed = 80; seed < 84; ++seed) {
+    std::mt19937_64 random(seed);
+    const auto plan = random_building({}, random);
+    ASSERT_THAT(plan, test::IsOk());
+    for (std::size_t i = 0; i < plan->walls.size(); ++i) {
+      const auto wall = static_cast<int>(i);
+      const Segment2 line = plan->wall_line(wall);
+      const auto [left, right] = plan->rooms_beside(wall);
+      EXPECT_EQ(plan->room_at(line.midpoint() + 0.05 * line.normal()), left);
+      EXPECT_EQ(plan->room_at(line.midpoint() - 0.05 * line.normal()), right);
+      EXPECT_EQ(plan->walls[i].outer, std::min(left, right) < 0);
+      EXPECT_NE(left, right);
+    }
+  }
+}
+
+TEST(AddDoor, FitsWhereverThereIsRoomAndNowhereElse) {
+  std::mt19937_64 random(6);
+  for (int i = 0; i < 300; ++i) {
+    FloorPlan plan = corridor_building();
+    plan.doors.clear();
+    const auto wall = static_cast<int>(uniform_index(random, plan.walls.size()));
+    const Segment2 line = plan.wall_line(wall);
+    const double width = uniform(random, 0.6, 4.5), jamb = uniform(random, 0, 0.3);
+    const auto added = add_door(plan, line.a + uniform(random, 0.05, 0.95) * (line.b - line.a), width, jamb);
+    if (!added) {
+      EXPECT_THAT(added, test::Fails(Errc::kDegenerate));
+      EXPECT_GT(width + 2 * jamb + 0.30, line.length()) << "it would have fitted";
+      EXPECT_TRUE(plan.doors.empty());
+      continue;
+    }
+    const Segment2 gap = plan.door_gap(0);
+    EXPECT_EQ(plan.doors[0].wall, wall);
+    EXPECT_NEAR(gap.length(), width, 1e-9);
+    EXPECT_GE((gap.a - line.a).norm(), jamb + 0.07 - 1e-9);
+    EXPECT_GE((gap.b - line.b).norm(), jamb + 0.07 - 1e-9);
+    EXPECT_LT(distance(line, gap.a) + distance(line, gap.b), 1e-9);
+  }
+}
+
+TEST(RandomBuilding, StandsForEveryParameterThatItAccepts) {
+  int built = 0;
+  for (std::uint64_t seed = 0; built < 40; ++seed) {
+    std::mt19937_64 random(seed);
+    RandomBuildingParams params;
+    params.length_m = uniform(random, 12, 50);
+    params.depth_m = uniform(random, 8, 40);
+    params.corridor_m = uniform(random, 1.8, 4);
+    params.room_depth_m = uniform(random, 2.5, 8);
+    params.min_room_m = uniform(random, 2.2, 5);
+    params.max_room_m = params.min_room_m * uniform(random, 1.5, 3);
+    params.min_door_m = uniform(random, 0.7, 1.2);
+    params.max_door_m = uniform(random, params.min_door_m, 1.6);
+    params.split_share = uniform01(random);
+    if (!params.validate()) continue;
+    ++built;
+    const auto plan = random_building(params, random);
+    ASSERT_THAT(plan, test::IsOk()) << seed;
+    std::vector<bool> reached(plan->rooms.size(), false);  // over doors, from corridor A
+    reached[0] = true;
+    for (bool more = true; more;) {
+      more = false;
+      for (const PlanDoor& door : plan->doors) {
+        const auto [left, right] = plan->rooms_beside(door.wall);
+        if (left < 0 || right < 0) continue;
+        const auto one = static_cast<std::size_t>(left), other = static_cast<std::size_t>(right);
+        if (reached[one] == reached[other]) continue;
+        reached[one] = reached[other] = more = true;
+      }
+    }
+    EXPECT_EQ(std::count(reached.begin(), reached.end(), false), 0) << "a room without a way in, seed " << seed;
+    for (std::size_t i = 0; i < plan->rooms.size(); ++i) EXPECT_GT(signed_area(plan->outline(static_cast<int>(i))), 1);
+  }
 }
 
 }  // namespace

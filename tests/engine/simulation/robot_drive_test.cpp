@@ -151,5 +151,92 @@ TEST(RobotDrive, RefusesNonsense) {
   EXPECT_THAT(params.validate(), test::Fails(Errc::kInvalidArgument));
 }
 
+TEST(RobotDrive, AStepLongerThanAWallIsThickCarriedItThroughTheWall) {
+  DriveParams params;
+  params.max_speed_mps = 2;
+  params.acceleration_mps2 = 20;
+  RobotDrive drive(params, {2, 2, 0}, std::mt19937_64(1));
+  const SegmentWorld world = build_world(two_room_building());  // a wall of 0.14 m at x = 4
+  Stamp now = 0;
+  for (int i = 0; i < 40; ++i) {
+    drive.command(2, 0, now);
+    now += from_seconds(0.5);
+    drive.step(world, from_seconds(0.5), now);  // a metre
+  }
+  EXPECT_LT(drive.true_pose().x(), 4);
+  EXPECT_GE(drive.bumps(), 1);
+}
+
+TEST(RobotDrive, GainsSpeedEvenlyAndBrakesTwiceAsHard) {
+  DriveParams params = perfect_wheels();
+  params.max_speed_mps = 5;
+  Drill drill(params);
+  drill.go(5, 0, 3);
+  EXPECT_NEAR(drill.drive.speed_mps(), 0.8 * 3, 1e-9);
+  EXPECT_NEAR(drill.drive.true_pose().x(), 0.5 * 0.8 * 9, 0.02) << "a t^2 / 2";
+  const double before = drill.drive.true_pose().x();
+  drill.go(0, 0, 2.4 / 1.6);
+  EXPECT_NEAR(drill.drive.speed_mps(), 0, 1e-9);
+  EXPECT_NEAR(drill.drive.true_pose().x() - before, 2.4 * 2.4 / (2 * 1.6), 0.03) << "v^2 / (2 a)";
+}
+
+TEST(RobotDrive, DriftsOnTheSpotWithTheAskedNoise) {
+  DriveParams params = perfect_wheels();
+  params.sigma_turn_per_turn = 0.03;
+  params.sigma_way_per_turn = 0.005;
+  double turn_squares = 0, way_squares = 0;
+  constexpr int kRuns = 300;
+  constexpr double kTurned = 10 - 0.125;  // 1 rad/s for 10 s, less what getting up to speed takes
+  for (int run = 0; run < kRuns; ++run) {
+    Drill drill(params, static_cast<std::uint64_t>(run) + 900);
+    drill.go(0, 1, 10);
+    const Pose2 off = drill.drive.true_pose().inverse() * drill.drive.odometry_pose();
+    EXPECT_NEAR(drill.drive.true_pose().translation().norm(), 0, 1e-12);
+    turn_squares += off.heading() * off.heading() / kTurned / kRuns;
+    way_squares += off.translation().squaredNorm() / kTurned / kRuns;
+  }
+  EXPECT_NEAR(std::sqrt(turn_squares), 0.03, 0.004);
+  EXPECT_NEAR(std::sqrt(way_squares), 0.005, 0.0008) << "ways in all directions add up like one";
+}
+
+TEST(RobotDrive, HasTheSameDriftInLongStepsAsInShortOnes) {
+  DriveParams params = perfect_wheels();
+  params.sigma_way_per_metre = 0.05;
+  const auto spread = [&](Stamp step) {
+    double squares = 0;
+    for (std::uint64_t run = 0; run < 200; ++run) {
+      RobotDrive drive(params, {}, std::mt19937_64(run));
+      const SegmentWorld world({{{{1e4, 0}, {1e4, 1}}}});
+      for (Stamp now = 0; now < from_seconds(10);) {
+        drive.command(0.5, 0, now);
+        drive.step(world, step, now += step);
+      }
+      squares += std::pow(drive.odometry_pose().x() - drive.true_pose().x(), 2) / drive.true_pose().x() / 200;
+    }
+    return std::sqrt(squares);
+  };
+  EXPECT_NEAR(spread(from_seconds(0.01)), 0.05, 0.006);
+  EXPECT_NEAR(spread(from_seconds(0.25)), 0.05, 0.006);
+}
+
+TEST(RobotDrive, NeverEntersAWallWhateverItIsTold) {
+  const SegmentWorld world = build_world(corridor_building());
+  int bumps = 0;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    std::mt19937_64 random(seed);
+    RobotDrive drive({}, {7, 6, uniform(random, -3, 3)}, std::mt19937_64(seed));
+    double speed = 0, turn = 0;
+    Stamp now = 0;
+    for (int i = 0; i < 4000; ++i) {
+      if (i % 50 == 0) speed = uniform(random, -1, 1), turn = uniform(random, -2, 2);
+      drive.command(speed, turn, now);
+      drive.step(world, kTick, now += kTick);
+      ASSERT_GE(world.clearance_m(drive.true_pose().translation(), 1), 0.25 - 1e-9) << "seed " << seed << " step " << i;
+    }
+    bumps += drive.bumps();
+  }
+  EXPECT_GT(bumps, 0);
+}
+
 }  // namespace
 }  // namespace smokemap

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 #include "core/random.hpp"
 #include "simulation/building.hpp"
@@ -105,6 +106,93 @@ TEST(SmokeField, IsClearAirWithoutAWorld) {
   EXPECT_TRUE(smoke.empty());
   EXPECT_EQ(smoke.optical_depth({0, 0}, {1, 0}, 10), 0);
   EXPECT_EQ(smoke.extinction_at({0, 0}), 0);
+}
+
+/// Nothing but four posts: smoke spreads over 40 x 40 m.
+SegmentWorld four_posts() {
+  std::vector<WorldSegment> posts;
+  for (const Point2& p : {Point2(-20, -20), Point2(20, -20), Point2(20, 20), Point2(-20, 20)})
+    posts.push_back({{p, p + Point2(0.01, 0)}});
+  return SegmentWorld(posts);
+}
+
+TEST(SmokeField, SpreadsLikeHeatFromAPoint) {
+  SmokeParams params;
+  params.decay_per_s = 0;
+  SmokeField smoke(four_posts(), params);
+  smoke.set_extinction({0.1, 0.1}, 8);
+  const Point2 center = smoke.frame().center_of(smoke.frame().cell_of({0.1, 0.1}));
+  for (const double seconds : {2.0, 5.0, 11.0}) {  // 2, 7, 18 s in all
+    smoke.advance(seconds);
+    Point2 squares = Point2::Zero(), mean = Point2::Zero();
+    for (int y = 0; y < smoke.frame().height_cells; ++y)
+      for (int x = 0; x < smoke.frame().width_cells; ++x) {
+        const Point2 off = smoke.frame().center_of({x, y}) - center;
+        const double share = smoke.extinction()[smoke.frame().index({x, y})] / 8;
+        mean += share * off;
+        squares += share * off.cwiseProduct(off);
+      }
+    EXPECT_NEAR(mean.norm(), 0, 1e-6);
+    const double total_s = seconds == 2.0 ? 2 : seconds == 5.0 ? 7 : 18;
+    EXPECT_NEAR(squares.x(), 2 * params.diffusion_m2ps * total_s, 1e-3) << "variance 2 D t along each axis";
+    EXPECT_NEAR(squares.y(), squares.x(), 1e-5);
+  }
+}
+
+TEST(SmokeField, SettlesExponentiallyAndFillsAtItsSourcesRate) {
+  SmokeParams params;
+  params.diffusion_m2ps = 0;
+  params.decay_per_s = 0.02;
+  SmokeField smoke(four_posts(), params);
+  smoke.set_extinction({0, 0}, 3);
+  smoke.advance(50);
+  EXPECT_NEAR(smoke.extinction_at({0, 0}), 3 * std::exp(-1.0), 1e-9);
+  params.decay_per_s = 0;
+  SmokeSource source{{5, 5}, 1.0, 0.25, 2.0};
+  SmokeField fire(four_posts(), params, {source});
+  fire.advance(4);
+  EXPECT_NEAR(fire.extinction_at({5, 5}), 1.0, 1e-9);
+  fire.advance(40);
+  EXPECT_NEAR(fire.extinction_at({5, 5}), 2.0, 1e-9) << "its ceiling";
+  EXPECT_EQ(fire.extinction_at({8, 5}), 0);
+}
+
+TEST(SmokeField, ManySmallStepsAreOneLargeOne) {
+  const auto burn = [](int steps) {
+    SmokeField smoke(build_world(corridor_building()), {}, {SmokeSource{{2, 2}}});
+    for (int i = 0; i < steps; ++i) smoke.advance(40.0 / steps);
+    return smoke;
+  };
+  const SmokeField once = burn(1), often = burn(400);
+  for (std::size_t i = 0; i < once.extinction().size(); ++i)
+    EXPECT_NEAR(once.extinction()[i], often.extinction()[i], 0.02 + 0.03 * often.extinction()[i]);
+}
+
+TEST(SmokeField, IsAsThickThereAsBackAndInPiecesAsInOne) {
+  std::mt19937_64 random(8);
+  SmokeField smoke(build_world(corridor_building()), {});
+  for (int y = 0; y < smoke.frame().height_cells; ++y)
+    for (int x = 0; x < smoke.frame().width_cells; ++x)
+      smoke.set_extinction(smoke.frame().center_of({x, y}), uniform01(random) < 0.3 ? 0 : uniform(random, 0, 3));
+  std::vector<SmokePiece> pieces;
+  for (int i = 0; i < 300; ++i) {
+    const Point2 a(uniform(random, -3, 17), uniform(random, -3, 14)),
+        b(uniform(random, -3, 17), uniform(random, -3, 14));
+    const double way = (b - a).norm(), part = uniform(random, 0, way);
+    const Point2 u = (b - a) / way;
+    const double whole = smoke.optical_depth(a, u, way);
+    EXPECT_NEAR(smoke.optical_depth(b, -u, way), whole, 1e-9);
+    EXPECT_NEAR(smoke.optical_depth(a, u, part) + smoke.optical_depth(a + part * u, u, way - part), whole, 1e-9);
+    smoke.trace(a, u, way, pieces);
+    double before = 0;
+    for (const SmokePiece& piece : pieces) {
+      EXPECT_GE(piece.from_m, before - 1e-12) << "near to far, none over another";
+      EXPECT_GT(piece.to_m, piece.from_m);
+      EXPECT_LE(piece.to_m, way + 1e-12);
+      EXPECT_EQ(piece.extinction_per_m, smoke.extinction_at(a + 0.5 * (piece.from_m + piece.to_m) * u));
+      before = piece.to_m;
+    }
+  }
 }
 
 }  // namespace
