@@ -180,5 +180,18 @@ TEST(Pairing, ANameInAnotherAlphabetWasTooLongAtTwentyLetters) {
     EXPECT_THAT(pair_as(odd), test::Fails(Errc::kInvalidArgument)) << odd;
 }
 
+TEST(Hosts, OfAConnectionOverIpv6AreWrittenInBrackets) {
+  const OriginPolicy policy({"Smoke.example", "proxy.example:8443"});
+  EXPECT_TRUE(policy.host_is_ours("[fe80::1]:8080", "fe80::1", 8080));
+  EXPECT_FALSE(policy.host_is_ours("fe80::1:8080", "fe80::1", 8080));
+  EXPECT_FALSE(policy.host_is_ours("localhost:8080", "fe80::1", 8080)) << "loopback names only on loopback";
+  EXPECT_TRUE(policy.host_is_ours("10.0.0.7:8080", "::ffff:10.0.0.7", 8080)) << "IPv4 inside of IPv6";
+  EXPECT_TRUE(policy.host_is_ours("localhost:8080", "::ffff:127.0.0.1", 8080));
+  for (const char* ours : {"smoke.EXAMPLE", "smoke.example:8080", "proxy.example:8443"})
+    EXPECT_TRUE(policy.host_is_ours(ours, "10.0.0.7", 8080)) << ours;
+  for (const char* foreign : {"smoke.example:81", "proxy.example", "a.smoke.example", "smoke.example.", ""})
+    EXPECT_FALSE(policy.host_is_ours(foreign, "10.0.0.7", 8080)) << foreign;
+}
+
 }  // namespace
 }  // namespace smokemap::server
