@@ -1,5 +1,6 @@
 #include <spdlog/spdlog.h>
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
@@ -57,30 +58,34 @@ nlohmann::json stats_of(const Slam& slam, const SensorLog& log) {
 }
 
 Result<Ok> run_slam(const SlamOptions& options) {
-  const auto log = read_log(options.log);
+  auto log = read_log(options.log);
   if (!log) return log.error();
   for (const std::string& warning : log->warnings) spdlog::warn("{}", warning);
   const bool radar_only = options.sensor == "radar" || (options.sensor == "auto" && log->scans() == 0);
   const bool lidar_only = options.sensor == "lidar";
   SlamParams params;
   params.beams.no_return_is_free = options.clear_air;
-  Slam slam(params);
+  auto slam = std::make_unique<Slam>(params);
   std::size_t fed = 0;
-  for (const LogItem& item : log->items) {
-    feed(slam, item, !radar_only, !lidar_only);
-    if (!std::holds_alternative<Odometry>(item) && ++fed % kOptimizeEveryScans == 0) slam.optimize();
+  for (LogItem& item : log->items) {
+    feed(*slam, item, !radar_only, !lidar_only);
+    if (!std::holds_alternative<Odometry>(item) && ++fed % kOptimizeEveryScans == 0) slam->optimize();
+    item = Odometry();  // a long log and its map need not be held at once
   }
-  slam.polish();
-  const Trajectory trajectory = slam.trajectory();
-  if (slam.graph().nodes.empty())
+  slam->polish();
+  const Trajectory trajectory = slam->trajectory();
+  const PoseGraph graph = slam->graph();
+  const std::string stats = stats_of(*slam, *log).dump(1) + "\n";
+  slam.reset();  // its back end is as large as the map that is drawn next
+  if (graph.nodes.empty())
     return fail(Errc::kDegenerate, options.log + ": no scan with enough points to make a map of");
   if (const auto written = write_tum(trajectory, options.trajectory); !written) return written;
   if (!options.map.empty()) {
     RenderParams render;
     render.resolution_m = options.resolution_m;
-    if (const auto written = write_map(render_map(slam.graph(), {}, render), options.map); !written) return written;
+    if (const auto written = write_map(render_map(graph, {}, render), options.map); !written) return written;
   }
-  if (!options.stats.empty()) return write_file(options.stats, stats_of(slam, *log).dump(1) + "\n");
+  if (!options.stats.empty()) return write_file(options.stats, stats);
   return Ok{};
 }
 
