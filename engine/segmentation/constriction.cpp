@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/check.hpp"
+#include "segmentation/furniture.hpp"
 #include "segmentation/regions.hpp"
 #include "segmentation/straighten.hpp"
 #include "segmentation/thickness.hpp"
@@ -187,19 +188,6 @@ cv::Mat constriction_labels(const cv::Mat& structure, const ConstrictionParams& 
   return labels;
 }
 
-/// Furniture hides how wide rooms are, so what counts as furniture is asked again once some of it is gone.
-cv::Mat without_furniture(const cv::Mat& free_space, double clutter_ratio) {
-  cv::Mat structure = without_islands(free_space, 0);
-  for (int round = 0; round < 3; ++round) {
-    const double typical = typical_thickness(local_thickness(clearance_image(structure)));
-    cv::Mat cleared = without_islands(free_space, clutter_ratio * typical);
-    const bool is_stable = cv::countNonZero(cleared != structure) == 0;
-    structure = cleared;
-    if (is_stable) break;
-  }
-  return structure;
-}
-
 }  // namespace
 
 Result<Ok> ConstrictionParams::validate() const {
@@ -224,7 +212,7 @@ ConstrictionParams matching_segmentation_params() {
 Result<Segmentation> segment_by_constrictions(const cv::Mat& free_space, const ConstrictionParams& params) {
   if (const Result<Ok> valid = params.validate(); !valid) return valid.error();
   if (const Result<Ok> sound = check_free_space(free_space); !sound) return sound.error();
-  const cv::Mat structure = without_furniture(free_space, params.clutter_ratio);
+  const cv::Mat structure = structure_of(free_space, params.clutter_ratio).free_space;
   cv::Mat labels = straighten_borders(constriction_labels(structure, params), structure);
   labels.setTo(0, free_space != 255);
   labels = connected_regions(labels);

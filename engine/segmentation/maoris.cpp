@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
 #include <opencv2/imgproc.hpp>
@@ -23,6 +24,7 @@ namespace {
 
 constexpr size_t kMaxMaorisPixels = size_t{16} << 20;
 constexpr int kLevelStep = 5;
+constexpr int kDiscOffset_px = 1;
 constexpr int kNoMinimum = 256;
 
 struct Passage {
@@ -174,14 +176,21 @@ class OpeningGraph {
     return best;
   }
 
-  /// Highest first; of equal ones the smallest.
+  /// Highest first; of equal ones the smallest, then the one found last. Neighbours of what was fused come again at the
+  /// end of the queue.
   void remove_ripples() {
-    using Turn = std::tuple<int, int, int>;  // minus value, area, zone
-    std::set<Turn> turns;
-    for (const auto& [id, zone] : zones_) turns.insert({-zone.value, zone.area, id});
-    while (!turns.empty()) {
-      const int id = std::get<2>(*turns.begin());
-      turns.erase(turns.begin());
+    std::vector<int> order;
+    for (const auto& [id, zone] : zones_) order.push_back(id);
+    std::sort(order.begin(), order.end(), [&](int one, int two) {
+      const OpeningZone &a = zones_.at(one), &b = zones_.at(two);
+      return std::make_tuple(-a.value, a.area, -one) < std::make_tuple(-b.value, b.area, -two);
+    });
+    std::deque<int> queue(order.begin(), order.end());
+    std::set<int> pending(order.begin(), order.end());
+    while (!queue.empty()) {
+      const int id = queue.front();
+      queue.pop_front();
+      pending.erase(id);
       if (!zones_.contains(id)) continue;
       const std::map<int, double> shares = contact_shares(id);
       const int into = closest(id, [&](int other) {
@@ -191,10 +200,8 @@ class OpeningGraph {
       if (into == 0) continue;
       const std::map<int, Passage> passages = zones_.at(id).passages;
       fuse(id, into, zones_.at(id).value);
-      for (const auto& [other, passage] : passages) {
-        const OpeningZone& zone = zones_.at(other);
-        turns.insert({-zone.value, zone.area, other});
-      }
+      for (const auto& [other, passage] : passages)
+        if (pending.insert(other).second) queue.push_back(other);
     }
   }
 
@@ -228,10 +235,11 @@ class OpeningGraph {
 
   /// From the highest zones down, everything that hangs together by similar values becomes one.
   void flow_together() {
-    std::set<std::tuple<int, int, int>> seeds;  // minus value, minus area, zone
-    for (const auto& [id, zone] : zones_) seeds.insert({-zone.value, -zone.area, id});
+    std::set<std::tuple<int, int, int>> seeds;  // minus value, minus area, minus zone
+    for (const auto& [id, zone] : zones_) seeds.insert({-zone.value, -zone.area, -id});
     std::map<int, int> room_of;
-    for (const auto& [value, area, seed] : seeds) {
+    for (const auto& [value, area, minus_seed] : seeds) {
+      const int seed = -minus_seed;
       if (room_of.contains(seed)) continue;
       std::vector<int> open(1, seed);
       room_of[seed] = seed;
@@ -273,10 +281,16 @@ class OpeningGraph {
   std::map<int, OpeningZone> zones_;
 };
 
-/// Thickness in whole pixels, as 1..255 of the largest in the map, rounded up to steps of five.
+/// Thickness in whole pixels, as 1..255 of the largest in the map, rounded up to steps of five. The authors paint their
+/// discs one pixel up and to the left of their centres, with which their results were made: the rim of free space at
+/// the right and below has no level.
 cv::Mat opening_levels(const cv::Mat& free_space) {
-  const cv::Mat thickness = fuzzy_opening(clearance_image(free_space));
-  double largest = 0;
+  const cv::Mat centred = fuzzy_opening(clearance_image(free_space));
+  cv::Mat thickness(centred.size(), CV_32FC1, cv::Scalar(0));
+  const cv::Rect all(0, 0, centred.cols - kDiscOffset_px, centred.rows - kDiscOffset_px);
+  if (all.area() > 0) centred(all + cv::Point(kDiscOffset_px, kDiscOffset_px)).copyTo(thickness(all));
+  thickness.setTo(0, free_space != 255);
+  double largest = 1;
   cv::minMaxLoc(thickness, nullptr, &largest);
   cv::Mat levels(free_space.size(), CV_8UC1, cv::Scalar(0));
   for (int y = 0; y < levels.rows; ++y)
@@ -314,7 +328,14 @@ Result<Segmentation> segment_maoris(const cv::Mat& free_space, const MaorisParam
   if (free_space.total() > kMaxMaorisPixels)
     return fail(Errc::kTooLarge, "the map has more than 16 megapixels: reduce it first");
   if (const Result<Ok> sound = check_free_space(free_space); !sound) return sound.error();
-  return described(OpeningGraph(opening_levels(free_space), params).segment());
+  cv::Mat labels = OpeningGraph(opening_levels(free_space), params).segment();
+  // The authors leave the rim and crumbs without a region; here every free pixel has one.
+  double last = 0;
+  grow_labels(free_space, labels);
+  cv::minMaxLoc(labels, nullptr, &last);
+  label_rest(free_space, static_cast<int>(last) + 1, labels);
+  sweep_crumbs(labels, params.least_room_px);
+  return described(labels);
 }
 
 }  // namespace smokemap

@@ -26,8 +26,10 @@ MaorisParams maoris_params(MapKind kind);
 ///
 /// Cost: a megapixel takes about a second.
 /// Source: Mielle, Magnusson, Lilienthal: A method to segment maps from different modalities using free space layout,
-/// ICRA 2018. Differs from the authors' program: zones are visited in a stated order where theirs follows memory
-/// addresses, discs are painted around their centres, and rooms that touch no other are kept.
+/// ICRA 2018. Follows the authors' program where it leaves the paper: discs are painted a pixel off their centres,
+/// fused zones' neighbours wait at the end of the queue, of equal zones the last comes first. Differs from it:
+/// neighbours are visited in a stated order where theirs follows memory addresses, and rooms that touch no other, the
+/// rim that discs miss, and crumbs are kept.
 Result<Segmentation> segment_maoris(const cv::Mat& free_space, const MaorisParams& params = {});
 
 }  // namespace smokemap

@@ -9,44 +9,16 @@
 #include <set>
 #include <tuple>
 
+#include "segmentation/furniture.hpp"
 #include "segmentation/regions.hpp"
-#include "segmentation/thickness.hpp"
 #include "segmentation/zones.hpp"
 
 namespace smokemap {
 namespace {
 
-constexpr int kRim_px = 2;              ///< not-free margin round the picture, so that no step looks outside
-constexpr double kScalePixels = 2.5e5;  ///< the usual thickness is measured on a picture no larger than this
-constexpr double kLeastArea = 0.1;      ///< of a candidate for a room, in squares of the usual thickness
-constexpr double kThinnest_px = 3;      ///< usual thickness from which rays of one or two pixels are noise
-
-double usual_thickness(const cv::Mat& structure) {
-  const double scale = std::min(1.0, std::sqrt(kScalePixels / static_cast<double>(structure.total())));
-  if (scale == 1) return typical_thickness(local_thickness(clearance_image(structure)));
-  cv::Mat small;
-  cv::resize(structure, small, {}, scale, scale, cv::INTER_NEAREST);
-  return typical_thickness(local_thickness(clearance_image(small))) / scale;
-}
-
-struct Structure {
-  cv::Mat free_space;  ///< without furniture
-  double thickness_px = 0;
-};
-
-/// Furniture hides how wide rooms are, so what counts as furniture is asked again once some of it is gone.
-Structure structure_of(const cv::Mat& free_space, double clutter_ratio) {
-  Structure structure{without_islands(free_space, 0), 0};
-  structure.thickness_px = usual_thickness(structure.free_space);
-  for (int round = 0; round < 3; ++round) {
-    cv::Mat cleared = without_islands(free_space, clutter_ratio * structure.thickness_px);
-    const bool is_stable = cv::countNonZero(cleared != structure.free_space) == 0;
-    structure.free_space = cleared;
-    if (is_stable) break;
-    structure.thickness_px = usual_thickness(cleared);
-  }
-  return structure;
-}
+constexpr int kRim_px = 2;          ///< not-free margin round the picture, so that no step looks outside
+constexpr double kLeastArea = 0.1;  ///< of a candidate for a room, in squares of the usual thickness
+constexpr double kThinnest_px = 3;  ///< usual thickness from which rays of one or two pixels are noise
 
 /// Free space with a rim and without rays and gaps of one or two pixels.
 cv::Mat smooth(const Structure& structure) {

@@ -30,6 +30,47 @@ TEST(SegmentMaoris, LabelsFreeSpaceAndNothingElse) {
   EXPECT_EQ(cv::countNonZero((result->labels != 0) != (plan.free_space == 255)), 0);
 }
 
+TEST(SegmentMaoris, GivesCrumbsOfALaserMapToTheNearestRoom) {
+  // Single pixels beside the walls were once regions of their own and counted as wrong ones.
+  cv::Mat map(120, 220, CV_8UC1, cv::Scalar(0));
+  map(cv::Rect(10, 10, 90, 90)).setTo(255);
+  map(cv::Rect(110, 10, 90, 90)).setTo(255);
+  map(cv::Rect(100, 46, 10, 16)).setTo(255);
+  for (int x = 12; x < 200; x += 7) map.at<unsigned char>(104, x) = 255;
+  const auto result = segment_maoris(map);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->regions.size(), 2u);
+  EXPECT_EQ(cv::countNonZero((result->labels != 0) != (map == 255)), 0);
+  EXPECT_EQ(result->labels.at<unsigned short>(104, 12), result->labels.at<unsigned short>(90, 12));
+}
+
+TEST(SegmentMaoris, KeepsARoomThatTouchesNoOther) {
+  cv::Mat map(120, 320, CV_8UC1, cv::Scalar(0));
+  map(cv::Rect(10, 10, 90, 90)).setTo(255);
+  map(cv::Rect(110, 10, 90, 90)).setTo(255);
+  map(cv::Rect(100, 46, 10, 16)).setTo(255);
+  map(cv::Rect(220, 20, 60, 60)).setTo(255);
+  const auto result = segment_maoris(map);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->regions.size(), 3u);
+}
+
+TEST(SegmentMaoris, KeepsACorridorOfOneWidthWhole) {
+  cv::Mat map(60, 420, CV_8UC1, cv::Scalar(0));
+  map(cv::Rect(10, 20, 400, 22)).setTo(255);
+  const auto result = segment_maoris(map);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->regions.size(), 1u);
+}
+
+TEST(SegmentMaoris, GivesTheSameBytesTwice) {
+  std::mt19937_64 random(23);
+  const test::PlanPicture plan = test::office_plan(random);
+  const auto one = segment_maoris(plan.free_space), two = segment_maoris(plan.free_space);
+  ASSERT_TRUE(one && two);
+  EXPECT_EQ(cv::countNonZero(one->labels != two->labels), 0);
+}
+
 TEST(SegmentMaoris, PartsTwoRoomsAtTheirDoor) {
   cv::Mat map(100, 200, CV_8UC1, cv::Scalar(0));
   map(cv::Rect(10, 10, 80, 80)).setTo(255);
