@@ -11,19 +11,19 @@
 namespace smokemap {
 namespace {
 
-constexpr double kReach = 1.2;       ///< how far the ends of a cut may slide along the walls, in widths of the contact
+constexpr double kSlideReach = 1.2;  ///< how far the ends of a cut may slide along the walls, in widths of the contact
 constexpr double kSlideCost = 0.3;   ///< widths of cut that a slide of one width must save
 constexpr double kLeastSpan = 0.25;  ///< widths of the contact that a cut must span along it
 constexpr size_t kMaxAttempts = 12;  ///< cuts tried for parting the two regions
 constexpr size_t kMaxWallPixels = 120;  ///< of each end looked at; more are thinned out evenly
 constexpr size_t kMaxTried = 4000;      ///< cuts looked at for a free line of sight, best first
 
-struct Cut {
+struct StraightCut {
   cv::Point a, b;
   double cost = 0;
 };
 
-bool is_free(const cv::Mat& structure, const cv::Point& p) {
+bool is_open(const cv::Mat& structure, const cv::Point& p) {
   return p.x >= 0 && p.y >= 0 && p.x < structure.cols && p.y < structure.rows && structure.at<unsigned char>(p) == 255;
 }
 
@@ -33,9 +33,9 @@ std::vector<cv::Point> wall_pixels_near(const cv::Mat& structure, const cv::Poin
   for (int y = end.y - reach; y <= end.y + reach; ++y)
     for (int x = end.x - reach; x <= end.x + reach; ++x) {
       const cv::Point p(x, y), offset = p - end;
-      if (offset.dot(offset) > reach * reach || is_free(structure, p)) continue;
-      const bool beside_free = is_free(structure, p + cv::Point(1, 0)) || is_free(structure, p + cv::Point(-1, 0)) ||
-                               is_free(structure, p + cv::Point(0, 1)) || is_free(structure, p + cv::Point(0, -1));
+      if (offset.dot(offset) > reach * reach || is_open(structure, p)) continue;
+      const bool beside_free = is_open(structure, p + cv::Point(1, 0)) || is_open(structure, p + cv::Point(-1, 0)) ||
+                               is_open(structure, p + cv::Point(0, 1)) || is_open(structure, p + cv::Point(0, -1));
       if (beside_free) found.push_back(p);
     }
   if (found.size() <= kMaxWallPixels) return found;
@@ -50,7 +50,7 @@ bool sees(const cv::Mat& structure, const cv::Point& a, const cv::Point& b) {
   for (int i = 1; i < steps; ++i) {
     const cv::Point p(a.x + static_cast<int>(std::lround(static_cast<double>(b.x - a.x) * i / steps)),
                       a.y + static_cast<int>(std::lround(static_cast<double>(b.y - a.y) * i / steps)));
-    if (!is_free(structure, p)) return false;
+    if (!is_open(structure, p)) return false;
   }
   return steps > 1;
 }
@@ -67,13 +67,13 @@ std::pair<cv::Point, cv::Point> ends_of(const std::vector<cv::Point>& pixels) {
 }
 
 /// Cuts with free sight near a contact, cheapest first.
-std::vector<Cut> cuts_near(const cv::Mat& structure, const Contact& contact) {
+std::vector<StraightCut> cuts_near(const cv::Mat& structure, const Contact& contact) {
   const auto [end_a, end_b] = ends_of(contact.pixels);
   const double width = cv::norm(end_b - end_a);
-  const int reach = static_cast<int>(std::ceil(std::max(3.0, kReach * width)));
+  const int reach = static_cast<int>(std::ceil(std::max(3.0, kSlideReach * width)));
   const std::vector<cv::Point> walls_a = wall_pixels_near(structure, end_a, reach);
   const std::vector<cv::Point> walls_b = wall_pixels_near(structure, end_b, reach);
-  std::vector<Cut> cuts;
+  std::vector<StraightCut> cuts;
   const cv::Point along = end_b - end_a;
   for (const cv::Point& a : walls_a) {
     const double slide_a = cv::norm(a - end_a);
@@ -84,14 +84,14 @@ std::vector<Cut> cuts_near(const cv::Mat& structure, const Contact& contact) {
       if (cost < width + 4) cuts.push_back({a, b, cost});
     }
   }
-  const auto cheaper = [](const Cut& one, const Cut& two) { return one.cost < two.cost; };
+  const auto cheaper = [](const StraightCut& one, const StraightCut& two) { return one.cost < two.cost; };
   if (cuts.size() > kMaxTried)
     std::nth_element(cuts.begin(), cuts.begin() + kMaxTried, cuts.end(), cheaper), cuts.resize(kMaxTried);
   std::stable_sort(cuts.begin(), cuts.end(), cheaper);
-  std::vector<Cut> distinct;  // neighbouring cuts part or fail alike
+  std::vector<StraightCut> distinct;  // neighbouring cuts part or fail alike
   const double apart = std::max(2.0, 0.1 * width);
-  for (const Cut& cut : cuts) {
-    const bool is_new = std::none_of(distinct.begin(), distinct.end(), [&](const Cut& other) {
+  for (const StraightCut& cut : cuts) {
+    const bool is_new = std::none_of(distinct.begin(), distinct.end(), [&](const StraightCut& other) {
       return cv::norm(cut.a - other.a) + cv::norm(cut.b - other.b) < apart;
     });
     if (is_new && sees(structure, cut.a, cut.b)) distinct.push_back(cut);
@@ -102,7 +102,7 @@ std::vector<Cut> cuts_near(const cv::Mat& structure, const Contact& contact) {
 
 /// Gives what lies between a contact and its cut to the side of the cut on which it lies. Only a window around both is
 /// looked at. False, and nothing is done, where the cut does not part the two regions.
-bool apply_cut(const Contact& contact, const Cut& cut, const std::vector<int>& areas, cv::Mat& labels) {
+bool apply_cut(const Contact& contact, const StraightCut& cut, const std::vector<int>& areas, cv::Mat& labels) {
   std::vector<cv::Point> corners = contact.pixels;
   corners.insert(corners.end(), {cut.a, cut.b});
   cv::Rect window = cv::boundingRect(corners);
@@ -149,7 +149,7 @@ cv::Mat straighten_borders(const cv::Mat& labels, const cv::Mat& structure) {
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x) ++areas[static_cast<size_t>(labels.at<int>(y, x))];
   for (const Contact& contact : find_contacts(labels)) {
-    for (const Cut& cut : cuts_near(structure, contact))
+    for (const StraightCut& cut : cuts_near(structure, contact))
       if (apply_cut(contact, cut, areas, straight)) break;
   }
   return straight;

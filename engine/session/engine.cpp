@@ -7,6 +7,8 @@
 #include <thread>
 
 #include "core/check.hpp"
+#include "navigation/bottleneck.hpp"
+#include "navigation/planner.hpp"
 
 namespace smokemap {
 namespace {
@@ -68,7 +70,11 @@ class Engine::Impl {
       return core_.way_question(robot, p_map);
     }();
     if (!question) return question.error();
-    return plan_path(*question->map, question->from_map, question->to_map, question->planner);
+    Result<Path> path = plan_path(*question->map, question->from_map, question->to_map, question->planner);
+    if (path || path.error().message != kNoWayKnown) return path;
+    if (const auto reason = too_narrow_a_way(*question->map, question->from_map, question->to_map))
+      return fail(Errc::kDegenerate, *reason);
+    return path;
   }
 
   std::shared_ptr<const Snapshot> snapshot() const {
