@@ -73,7 +73,7 @@ TEST(TraceLines, CoversEveryPixelOfALineOnce) {
     EXPECT_EQ(cv::countNonZero(covered & (line == 0)), 0);
     // Only further pixels of a node that has several are left over.
     cv::Mat grown;
-    cv::dilate(covered, grown, cv::getStructuringElement(cv::MORPH_RECT, {5, 5}));
+    cv::dilate(covered, grown, cv::getStructuringElement(cv::MORPH_RECT, {7, 7}));
     EXPECT_EQ(cv::countNonZero(line & (grown == 0)), 0);
   }
 }
