@@ -20,7 +20,7 @@ struct SegmentationParams {
   double door_ratio = 0.6;    ///< an opening narrower than this share of the space on both its sides is a door
   double door_support = 0.1;  ///< added to it for each end at which a wall runs on in the direction of the opening
   double niche_depth = 0.3;   ///< what is shallower than this many widths of its opening belongs to its neighbour
-  BoundaryStyle with_doors{0.3, 0, 1, 0.5};            ///< where a map shows doors, what has none is one room
+  BoundaryStyle with_doors{0.3, 0, 1, 0.5};             ///< where a map shows doors, what has none is one room
   BoundaryStyle without_doors{0.87, 0.15, 0.38, 0.02};  ///< where it shows none, bends and widenings part rooms
   double clutter_ratio = 0.7;       ///< islands smaller than this many usual thicknesses are furniture
   double tolerance_ratio = 0.05;    ///< wobble of walls, in usual thicknesses
