@@ -25,6 +25,11 @@ struct ScanAlignment {
 /// Moves the points onto the map: Gauss-Newton on robust point-to-line distances, surfaces looked up again in every
 /// iteration, within a gate that closes. r_i = n_i . (R p_i + t - q_i), Geman-McClure kernel.
 /// Never fails: no surface found gives a score of 0.
+///
+/// Oriented surface points were kept because they are the better field: of 180-beam scans started 10 cm and 3 degrees
+/// off (one sigma) 98.6 % end within 3 cm and half a degree, median 2.8 mm, in 0.09 ms; on NDT cells of 0.25 m 90
+/// %, 3.2 mm, 0.6 ms; on a bicubic hit grid of 0.05 m, none of the three tuned, 46 %, 33 mm, 0.6 ms (`bench
+/// slam-fields`).
 ScanAlignment align(const std::vector<SurfacePoint>& points_robot, const SurfaceMap& map, const Pose2& T_map_robot,
                     const AlignParams& params, const std::optional<PosePrior>& prior = {});
 
