@@ -100,7 +100,7 @@ bool alike(const Trial& a, const Trial& b, double metres) {
 
 /// All trials on a lattice around the centre; the best few that are not alike, best first.
 std::vector<Trial> lattice(const Scene& scene, const Trial& center, const Span& shift, const Span& turn,
-                           const Span& scale, const AlignmentSearch* prior, std::size_t keep, double apart_m) {
+                           const Span& scale, const StartSearch* prior, std::size_t keep, double apart_m) {
   std::vector<Trial> all;
   const auto steps = [](const Span& s) { return static_cast<int>(std::ceil(s.reach / s.step - 1e-9)); };
   for (int u = -steps(scale); u <= steps(scale); ++u)
@@ -217,7 +217,7 @@ std::vector<Point2> first_hits(const std::vector<NodeView>& views, const GraphSt
 }
 
 Result<std::vector<PlanAlignment>> align_plan(const PlanModel& plan, const std::vector<Point2>& hits_map,
-                                              const Point2& robot_map, const AlignmentSearch& search) {
+                                              const Point2& robot_map, const StartSearch& search) {
   if (hits_map.size() < 20) return fail(Errc::kDegenerate, "too little seen to align the plan");
   std::vector<Point2> hits_rel;
   for (const Point2& p : hits_map) hits_rel.push_back(p - robot_map);

@@ -10,7 +10,7 @@
 namespace smokemap {
 
 /// Where to look for the plan, before anything of it is aligned.
-struct AlignmentSearch {
+struct StartSearch {
   std::optional<Similarity2> guess;  ///< layout -> map; none: anywhere, any heading
   double sigma_m = 0.3;              ///< of the guess, at the robot's first pose
   double sigma_rad = 0.05;
@@ -38,7 +38,7 @@ struct PlanAlignment {
 /// to fine, on a distance field. Only nodes within a few metres of way should be given: the plan is stretched.
 /// kDegenerate without enough hits.
 Result<std::vector<PlanAlignment>> align_plan(const PlanModel& plan, const std::vector<Point2>& hits_map,
-                                              const Point2& robot_map, const AlignmentSearch& search);
+                                              const Point2& robot_map, const StartSearch& search);
 
 /// Points on the pieces seen by the nodes up to a given way from the first, not farther than `reach_m` from the robot,
 /// thinned to a few hundred.

@@ -41,7 +41,7 @@ double corners_apart_m(const std::vector<std::array<double, 2>>& a, const std::v
 }  // namespace
 
 bool AutoCompleteGraph::Impl::align(Learnt& l) const {
-  AlignmentSearch search;
+  StartSearch search;
   search.scale_sigma = std::max(0.05, plan->scale_sigma);
   double way = kAlignWay_m;
   if (anchors.size() >= 2) {

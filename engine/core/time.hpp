@@ -8,7 +8,14 @@ namespace smokemap {
 using Stamp = std::int64_t;
 
 constexpr double to_seconds(Stamp nanoseconds) { return static_cast<double>(nanoseconds) * 1e-9; }
-constexpr Stamp from_seconds(double seconds) { return static_cast<Stamp>(seconds * 1e9 + (seconds < 0 ? -0.5 : 0.5)); }
+/// To the nearest nanosecond. What a stamp cannot hold becomes the nearest it can (292 years), what is no number 0.
+constexpr Stamp from_seconds(double seconds) {
+  constexpr double kMost = 9.2e18;
+  const double nanoseconds = seconds * 1e9;
+  if (!(nanoseconds > -kMost)) return nanoseconds <= -kMost ? static_cast<Stamp>(-kMost) : 0;
+  if (nanoseconds >= kMost) return static_cast<Stamp>(kMost);
+  return static_cast<Stamp>(nanoseconds + (nanoseconds < 0 ? -0.5 : 0.5));
+}
 
 /// The wall clock as an interface, so that tests own the time.
 class Clock {

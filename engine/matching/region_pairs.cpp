@@ -7,7 +7,7 @@ namespace smokemap {
 namespace {
 
 constexpr double kBlur_cells = 4.5;    ///< how far a room may lie from its place, added to the size of the rooms
-constexpr double kSizeSpread = 0.6;    ///< standard deviation of the logarithm of drawn over true area
+constexpr double kSizeSpread = 0.7;    ///< standard deviation of the logarithm of drawn over true area
 constexpr double kOverlapShare = 0.4;  ///< of the likeness; the rest is place and size
 constexpr double kLeastInside = 0.6;   ///< share of a left-over region that must lie in another's partner
 

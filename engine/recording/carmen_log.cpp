@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 #include <vector>
@@ -165,7 +166,7 @@ double range_limit(const CarmenParts& parts) {
   double limit = largest >= kLmsLimitM ? kLmsLimitM : largest >= kPlsLimitM ? kPlsLimitM : 0;
   if (parts.range_max_m && (limit == 0 || *parts.range_max_m < limit)) limit = *parts.range_max_m;
   if (limit > 0) return limit;
-  return times >= kAgainAndAgain ? largest : std::nextafter(largest, 2 * kLmsLimitM);
+  return times >= kAgainAndAgain ? largest : std::nextafter(largest, std::numeric_limits<float>::infinity());
 }
 
 void set_angles(LaserScan& scan, double fov_rad) {

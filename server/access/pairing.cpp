@@ -4,6 +4,7 @@
 #include <openssl/evp.h>
 #include <openssl/rand.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -67,7 +68,24 @@ Access::Access(const PairingParams& params, std::shared_ptr<const Clock> clock, 
 
 void Access::restore(const PairedDevice& device) {
   const std::lock_guard lock(mutex_);
-  by_token_hash_[device.token_hash] = device;
+  if (device.revoked)
+    by_token_hash_.erase(device.token_hash);
+  else
+    by_token_hash_[device.token_hash] = {device, device.created_ms * 1'000'000};
+}
+
+Result<Ok> Access::make_room() {
+  if (by_token_hash_.size() < params_.most_devices) return Ok{};
+  const auto longest_away =
+      std::min_element(by_token_hash_.begin(), by_token_hash_.end(),
+                       [](const auto& a, const auto& b) { return a.second.last_seen < b.second.last_seen; });
+  if (longest_away == by_token_hash_.end() || clock_->now() - longest_away->second.last_seen < params_.idle)
+    return fail(Errc::kTooLarge, "no more than " + std::to_string(params_.most_devices) + " devices can be paired");
+  PairedDevice gone = longest_away->second.device;
+  gone.revoked = true;
+  if (auto saved = save_(gone); !saved) return saved.error();
+  by_token_hash_.erase(longest_away);
+  return Ok{};
 }
 
 Result<Ok> Access::check_pin(const PairRequest& request) {
@@ -92,20 +110,20 @@ Result<Paired> Access::pair(const PairRequest& request) {
   const std::lock_guard lock(mutex_);
   if (!usable_name(request.name)) return fail(Errc::kInvalidArgument, "a name of 1 to 40 characters is needed");
   if (auto right = check_pin(request); !right) return right.error();
-  if (by_token_hash_.size() >= params_.most_devices)
-    return fail(Errc::kTooLarge, "no more than " + std::to_string(params_.most_devices) + " devices can be paired");
+  if (auto room = make_room(); !room) return room.error();
   Paired paired{{"d-" + random_hex(8), request.name, request.role}, random_hex(16)};
   const PairedDevice device{paired.who, token_hash(paired.token), clock_->now() / 1'000'000, false};
   if (auto saved = save_(device); !saved) return saved.error();
-  by_token_hash_[device.token_hash] = device;
+  by_token_hash_[device.token_hash] = {device, clock_->now()};
   return paired;
 }
 
 std::optional<Identity> Access::identify(std::string_view token) const {
   const std::lock_guard lock(mutex_);
   const auto it = by_token_hash_.find(token_hash(token));
-  if (it == by_token_hash_.end() || it->second.revoked) return std::nullopt;
-  return it->second.who;
+  if (it == by_token_hash_.end()) return std::nullopt;
+  it->second.last_seen = clock_->now();
+  return it->second.device.who;
 }
 
 }  // namespace smokemap::server

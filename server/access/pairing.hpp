@@ -26,6 +26,7 @@ struct PairingParams {
   bool loopback_without_pin = false;  ///< the demo
   std::string pin;                    ///< empty = drawn at the start
   std::size_t most_devices = 200;
+  Stamp idle = from_seconds(24 * 3600);  ///< a device not seen for so long may be forgotten for a new one
 };
 
 /// A device as it is kept: never the token, only its hash.
@@ -57,20 +58,26 @@ class Access {
 
   void restore(const PairedDevice& device);
 
-  /// kForbidden: wrong PIN. kConflict: locked after too many wrong ones. kInvalidArgument: no usable name.
+  /// kForbidden: wrong PIN. kConflict: locked after too many wrong ones. kInvalidArgument: no usable name. kTooLarge:
+  /// there are `most_devices`, and all were seen lately; else the one that was away longest has to pair again.
   Result<Paired> pair(const PairRequest& request);
   /// Who holds this token; nothing for a wrong or revoked one.
   std::optional<Identity> identify(std::string_view token) const;
   const std::string& pin() const { return pin_; }
 
  private:
+  struct Known {
+    PairedDevice device;
+    Stamp last_seen = 0;
+  };
   Result<Ok> check_pin(const PairRequest& request);
+  Result<Ok> make_room();
   PairingParams params_;
   std::shared_ptr<const Clock> clock_;
   Save save_;
   std::string pin_;
   mutable std::mutex mutex_;
-  std::map<std::string, PairedDevice, std::less<>> by_token_hash_;
+  mutable std::map<std::string, Known, std::less<>> by_token_hash_;  // who asks is seen
   int wrong_ = 0;
   Stamp locked_until_ = 0;
 };

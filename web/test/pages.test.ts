@@ -130,7 +130,7 @@ describe('walls and rooms in words', () => {
     await opened.delta('sketch_regions', { 1: { outline, kind: 'room', pair: 4, confidence: 0.9 }, 2: { outline, kind: 'corridor', pair: null, confidence: null } });
     const text = words(opened, SketchPanel, { bounds: () => ({ minX: 0, minY: 0, maxX: 9, maxY: 9 }), gaps: 2, onselect: nothing });
     expect(text).toContain('2 open');
-    expect(text).toMatch(/Room 1\s+sure/);
+    expect(text).toMatch(/Room 1\s+room 4 of the plan: sure/);
     expect(text).toMatch(/Corridor 2\s+no match yet/);
   });
 });

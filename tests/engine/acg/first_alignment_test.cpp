@@ -55,7 +55,7 @@ TEST(AlignPlan, FindsThePlanNearAGuessThatIsOff) {
   const PlanModel plan = l_shaped_plan();
   const PlanPlacement truth{0.5, {1.06, 0.97}, 0, {1, 2}};
   const Point2 robot = truth * Point2(2, 2);
-  AlignmentSearch search;
+  StartSearch search;
   search.sigma_m = 0.5;
   search.sigma_rad = 0.09;
   const Point2 off(0.5, -0.4);

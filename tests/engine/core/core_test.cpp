@@ -71,6 +71,11 @@ TEST(Random, IndexReachesEveryValueEvenly) {
 
 TEST(Time, SecondsGoThereAndBack) {
   EXPECT_EQ(from_seconds(1.5), 1'500'000'000);
+  EXPECT_EQ(from_seconds(1e300), 9'200'000'000'000'000'000) << "undefined before: logs hold such stamps";
+  EXPECT_EQ(from_seconds(-1e300), -9'200'000'000'000'000'000);
+  EXPECT_EQ(from_seconds(std::numeric_limits<double>::infinity()), from_seconds(1e300));
+  EXPECT_EQ(from_seconds(-std::numeric_limits<double>::infinity()), from_seconds(-1e300));
+  EXPECT_EQ(from_seconds(std::nan("")), 0);
   EXPECT_EQ(from_seconds(-0.25), -250'000'000);
   EXPECT_DOUBLE_EQ(to_seconds(from_seconds(12.125)), 12.125);
 }

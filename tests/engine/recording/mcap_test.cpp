@@ -33,7 +33,7 @@ SensorLog random_log(std::uint64_t seed, int items) {
     const Pose2 mount = robot == "fox" ? Pose2(0.25, 0, 0.5) : Pose2(-0.5, 0.125, 1);
     const std::uint64_t kind = uniform_index(random, 3);
     if (kind == 0) {
-      LaserScan scan{stamp, robot, -1.5f, 0.25f, 0, 0.125, 12, {}, {}, mount};
+      LaserScan scan{stamp, robot, -1.5f, 0.03125f, 0, 0.125, 12, {}, {}, mount};
       for (int beam = 0; beam < 200; ++beam) scan.ranges_m.push_back(static_cast<float>(uniform(random, 0, 20)));
       scan.intensities.assign(200, 7);
       log.items.emplace_back(scan);

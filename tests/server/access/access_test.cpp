@@ -91,6 +91,29 @@ TEST(Pairing, RemembersDevicesAndForgetsRevokedOnes) {
   EXPECT_FALSE(after.access->identify(paired->token));
 }
 
+TEST(Pairing, AfterTwoHundredDevicesNobodyCouldPairEverAgain) {
+  PairingParams params;
+  params.most_devices = 3;
+  Door door(params);
+  std::vector<std::string> tokens;
+  for (int i = 0; i < 3; ++i) {
+    tokens.push_back(door.try_pin("123456")->token);
+    door.clock->advance(from_seconds(3600));
+  }
+  EXPECT_THAT(door.try_pin("123456"), test::Fails(Errc::kTooLarge)) << "all were here today";
+  door.clock->advance(from_seconds(22 * 3600));
+  ASSERT_TRUE(door.access->identify(tokens[0]));  // the oldest is still in use
+  door.disk_full = true;
+  EXPECT_THAT(door.try_pin("123456"), test::Fails(Errc::kIo));
+  EXPECT_TRUE(door.access->identify(tokens[2])) << "nobody is forgotten for one who was not kept";
+  door.disk_full = false;
+  EXPECT_THAT(door.try_pin("123456"), test::IsOk());
+  EXPECT_TRUE(door.access->identify(tokens[0]));
+  EXPECT_FALSE(door.access->identify(tokens[1])) << "it was away longest";
+  EXPECT_TRUE(door.access->identify(tokens[2]));
+  EXPECT_TRUE(door.saved[door.saved.size() - 2].revoked) << "also after a restart";
+}
+
 TEST(Secrets, AreNotTheSameTwice) {
   std::set<std::string> seen;
   for (int i = 0; i < 200; ++i) {
