@@ -38,9 +38,10 @@ struct Hypothesis {
 ///
 /// The weights were first chosen while looking at both KTH and E5, so that figures on these are somewhat too good. Two
 /// that decide most between a map and the same map turned round were chosen again: the weight of what is covered on
-/// generated sketches (seeds 1 to 60) and KTH, the spread of sizes (region_pairs.cpp) on generated sketches and E5 (0.6).
-/// The set left out each time got worse for it (E5 0.68 -> 0.58, KTH 0.74 -> 0.67, room hit without taps; some maps look
-/// almost alike both ways round, and each tips over at its own weight). 0.7 lies between what either would choose.
+/// generated sketches (seeds 1 to 60) and KTH, the spread of sizes (region_pairs.cpp) on generated sketches and E5
+/// (0.6). The set left out each time got worse for it (E5 0.68 -> 0.58, KTH 0.74 -> 0.67, room hit without taps; some
+/// maps look almost alike both ways round, and each tips over at its own weight). 0.7 lies between what either would
+/// choose.
 class HypothesisFinder {
  public:
   HypothesisFinder(const Segmentation& a, const Segmentation& b, const MatchParams& params);
