@@ -29,7 +29,7 @@ SensorLog random_log(std::uint64_t seed, int items) {
   for (int i = 0; i < items; ++i) {
     const std::string robot = uniform_index(random, 2) == 0 ? "robot" : "fox";
     const Stamp stamp =
-        1'700'000'000'000'000'000 + i * 10'000'000 - static_cast<Stamp>(uniform_index(random, 30'000'000));
+        1'700'000'000'000'000'000 + Stamp{i} * 10'000'000 - static_cast<Stamp>(uniform_index(random, 30'000'000));
     const Pose2 mount = robot == "fox" ? Pose2(0.25, 0, 0.5) : Pose2(-0.5, 0.125, 1);
     const std::uint64_t kind = uniform_index(random, 3);
     if (kind == 0) {
