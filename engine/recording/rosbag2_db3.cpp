@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -55,11 +56,28 @@ Result<Ok> read_messages(sqlite3* database, RosLogBuilder& builder) {
   return Ok{};
 }
 
+/// A bag that ROS wrote with a write-ahead log makes even a reader lay two files beside it, unless it is told that
+/// nobody changes the bag. Where such a log lies there already, its messages are wanted too.
+std::string uri_of(const std::filesystem::path& path) {
+  std::string uri = "file:";
+  for (const char c : path.string()) {
+    constexpr const char* kDigits = "0123456789ABCDEF";
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '%' || c == '?' || c == '#')
+      uri += {'%', kDigits[byte >> 4], kDigits[byte & 15]};
+    else
+      uri += c;
+  }
+  std::error_code ignored;
+  const bool has_log = std::filesystem::exists(path.string() + "-wal", ignored);
+  return uri + (has_log ? "?mode=ro" : "?immutable=1");
+}
+
 }  // namespace
 
 Result<Ok> read_db3(const std::filesystem::path& path, RosLogBuilder& builder) {
   sqlite3* opened = nullptr;
-  const int status = sqlite3_open_v2(path.c_str(), &opened, SQLITE_OPEN_READONLY, nullptr);
+  const int status = sqlite3_open_v2(uri_of(path).c_str(), &opened, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
   const Database database(opened);
   if (status != SQLITE_OK) return fail(Errc::kIo, "cannot open " + path.string());
   return read_messages(opened, builder);

@@ -39,8 +39,9 @@ class ScratchFolder {
 /// Writes rosbag2's SQLite form: its tables as every version since Dashing has them, plus those of Humble when asked.
 class BagFile {
  public:
-  explicit BagFile(const std::filesystem::path& path, bool humble = true) {
+  explicit BagFile(const std::filesystem::path& path, bool humble = true, bool with_log = false) {
     EXPECT_EQ(sqlite3_open(path.c_str(), &database_), SQLITE_OK);
+    if (with_log) run("PRAGMA journal_mode=WAL");
     run("PRAGMA synchronous=OFF");  // nobody pulls the plug of a test
     run("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
         "serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL)");

@@ -5,7 +5,9 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "recording/ros_messages.hpp"
@@ -213,6 +215,21 @@ TEST(SensorLog, SaysInOneLineWhyThereIsNoLog) {
   EXPECT_THAT(read_log(folder / "broken.db3"), test::Fails(Errc::kCorrupt));
   { const test::BagFile empty(folder / "empty.db3"); }
   EXPECT_THAT(read_log(folder / "empty.db3"), test::Fails(Errc::kDegenerate));
+}
+
+TEST(Rosbag2, ReadingABagLaidTwoFilesBesideIt) {
+  const test::ScratchFolder folder;
+  const auto path = folder / "50% #1 of what?.db3";
+  {
+    test::BagFile bag(path, true, true);
+    bag.write("/tf_static", kTransformsType, 1, mounts());
+    bag.write("/scan", kLaserScanType, 2, encode_scan(some_scan(100), "laser"));
+  }
+  const auto log = read_log(path);
+  ASSERT_THAT(log, test::IsOk());
+  EXPECT_EQ(log->items.size(), 1u);
+  const std::filesystem::directory_iterator files(path.parent_path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "a log of its own, or a lock";
 }
 
 }  // namespace
