@@ -35,7 +35,7 @@ void RobotLinkage::lead(const std::string& robot, const Pose2& T_robot_place) {
   Given& given = given_[robot];
   // A report may have overtaken us: it is never older than what it is about.
   if (!sent)
-    given = {0, Errand::kGivenUp};
+    given.errand = Errand::kGivenUp;  // its number stays: late reports of older goals are still older
   else if (given.number < sent->number)
     given = {sent->number, Errand::kUnderWay};
 }

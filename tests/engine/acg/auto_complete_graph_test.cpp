@@ -54,6 +54,12 @@ bool all_finite(const MergedMap& merged) {
                      [](const StampedPose& p) { return p.T_map_robot.is_finite(); });
 }
 
+std::size_t first_seen_corner(const MergedMap& merged) {
+  std::size_t seen = 0;
+  while (!merged.corners[seen].seen) ++seen;
+  return seen;
+}
+
 TEST(AutoCompleteGraph, PutsTheCornersOfAStretchedPlanWhereTheyAre) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     MergeProblemParams params;
@@ -144,8 +150,7 @@ TEST(AutoCompleteGraph, HoldsAPinnedCornerAndAMeasuredWallWhateverSensorsSay) {
   AutoCompleteGraph acg;
   ASSERT_THAT(acg.set_plan(problem.plan, problem.start), IsOk());
   const MergedMap before = *acg.update(problem.graph);
-  std::size_t seen = 0;
-  while (!before.corners[seen].seen) ++seen;
+  const std::size_t seen = first_seen_corner(before);
   const Point2 pin = before.corners[seen].p_map + Point2(0.3, 0.2);
   ASSERT_THAT(acg.pin_corner(static_cast<int>(seen), pin), IsOk());
   std::size_t wall = 0;
@@ -251,8 +256,7 @@ TEST(AutoCompleteGraph, BelievesAPersonsPairMoreThanSensorsAndShowsTheResidual) 
   AutoCompleteGraph acg;
   ASSERT_THAT(acg.set_plan(problem.plan, problem.start), IsOk());
   const MergedMap before = *acg.update(problem.graph);
-  std::size_t seen = 0;
-  while (!before.corners[seen].seen) ++seen;
+  const std::size_t seen = first_seen_corner(before);
   const Point2 said = before.corners[seen].p_map + Point2(0.5, 0.33);
   acg.add_anchor("said", problem.plan.corners[seen].p_px, said);
   const MergedMap after = *acg.update(problem.graph);
