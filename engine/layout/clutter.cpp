@@ -141,6 +141,43 @@ cv::Mat find_text(const cv::Mat& ink) {
   return text;
 }
 
+namespace {
+
+/// Share of the circle that lies on ink.
+double inked_share(const cv::Mat& ink, const cv::Point2d& centre, double radius) {
+  int inked = 0;
+  constexpr int kSteps = 72;
+  for (int i = 0; i < kSteps; ++i) {
+    const double angle = 2 * CV_PI * i / kSteps;
+    const int x = static_cast<int>(std::lround(centre.x + radius * std::cos(angle))),
+              y = static_cast<int>(std::lround(centre.y + radius * std::sin(angle)));
+    inked += x >= 0 && y >= 0 && x < ink.cols && y < ink.rows && ink.at<std::uint8_t>(y, x) != 0;
+  }
+  return static_cast<double>(inked) / kSteps;
+}
+
+/// Dots ("you are here"), also those hardly wider than a wall: round, and standing alone as no junction of walls does.
+void add_dots(cv::Mat& blocks, const cv::Mat& ink, double wall_px, int rim) {
+  const double side = std::max(ink.rows, ink.cols);
+  const int least = static_cast<int>(std::lround(std::max(1.5 * wall_px, 0.006 * side)));
+  cv::Mat discs, labels, stats, centroids;
+  cv::morphologyEx(ink, discs, cv::MORPH_OPEN, cv::getStructuringElement(cv::MORPH_ELLIPSE, {least, least}));
+  const int count = cv::connectedComponentsWithStats(discs, labels, stats, centroids, 8, CV_32S);
+  for (int label = 1; label < count; ++label) {
+    const double width = stats.at<int>(label, cv::CC_STAT_WIDTH), height = stats.at<int>(label, cv::CC_STAT_HEIGHT);
+    const double filled = stats.at<int>(label, cv::CC_STAT_AREA) / (width * height);
+    if (std::max(width, height) > kLargestBlock * side || std::max(width, height) > 1.2 * std::min(width, height))
+      continue;
+    if (std::abs(filled - CV_PI / 4) > 0.08) continue;
+    const cv::Point2d centre(centroids.at<double>(label, 0), centroids.at<double>(label, 1));
+    const double radius = 0.5 * std::max(width, height);
+    if (inked_share(ink, centre, radius + rim) > 0.3) continue;
+    cv::circle(blocks, centre, static_cast<int>(std::lround(radius)) + rim, cv::Scalar(255), cv::FILLED);
+  }
+}
+
+}  // namespace
+
 cv::Mat find_blocks(const cv::Mat& ink, double wall_px) {
   const double side = std::max(ink.rows, ink.cols);
   const int least = std::max(3, static_cast<int>(std::lround(std::max(1.8 * wall_px, 0.005 * side))));
@@ -162,6 +199,7 @@ cv::Mat find_blocks(const cv::Mat& ink, double wall_px) {
     cv::fillConvexPoly(blocks, hull, cv::Scalar(255));
     cv::polylines(blocks, std::vector<std::vector<cv::Point>>{hull}, true, cv::Scalar(255), 2 * rim);
   }
+  add_dots(blocks, ink, wall_px, rim);
   return blocks;
 }
 

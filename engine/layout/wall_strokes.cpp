@@ -10,6 +10,7 @@ namespace smokemap {
 namespace {
 
 constexpr double kHollowShare = 0.3;  ///< of the long lines in pairs: from here on single lines are no walls
+constexpr double kWindowReach = 2.5;  ///< times the widest door: how far a post may be from the wall it carries on
 constexpr double kClosed = 1.5;       ///< times an outline's thickness: solid, or two lines that blur made one
 
 /// The value below which `share` of the weight lies.
@@ -68,8 +69,9 @@ std::vector<InkStroke> without_echoes(const std::vector<InkStroke>& strokes) {
   std::vector<InkStroke> kept;
   for (const auto& s : strokes) {
     const bool echo = std::any_of(strokes.begin(), strokes.end(), [&](const InkStroke& o) {
-      const double body = 0.75 * o.thickness_px + 1;
-      return o.length() > 1.3 * s.length() && line_angle_between(o.axis.heading(), s.axis.heading()) < radians(35) &&
+      const double body = o.thickness_px + 1;
+      return o.length() > 1.3 * s.length() && o.coverage > s.coverage - 0.2 &&
+             line_angle_between(o.axis.heading(), s.axis.heading()) < radians(35) &&
              distance(o.axis, s.axis.a) < body && distance(o.axis, s.axis.b) < body;
     });
     if (!echo) kept.push_back(s);
@@ -198,7 +200,7 @@ WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture
     else if (s.thickness_px < 2.2 * out.thickness_px && s.coverage > 0.55)
       thick.push_back(s);
   }
-  thick = without_blocks(without_echoes(thick), params.max_opening_share * side);
+  thick = without_blocks(without_echoes(thick), kWindowReach * params.max_opening_share * side);
 
   // Lines of the main class in pairs: nothing is thicker than the outline of a wall.
   const auto pairs = merge_collinear(pair_hollow(thick, 0.6 * params.max_wall_share * side), params.merge_angle_deg, 2);
