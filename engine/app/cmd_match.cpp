@@ -102,6 +102,7 @@ nlohmann::json match_document(const Matching& matching, const PointTransfer& tra
           {"runner_up", pairs_document(matching.runner_up)},
           {"margin", matching.margin},
           {"doubtful", matching.doubtful},
+          {"same_building", std::round(matching.same_building * 1000) / 1000},
           {"next_pin", matching.next_pin_label_a ? nlohmann::json(*matching.next_pin_label_a) : nlohmann::json()},
           {"transfer", places},
           {"transfer_sigma_px", sigmas},

@@ -2,7 +2,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <string>
+#include <vector>
 
 #include "app/commands.hpp"
 #include "app/map_picture.hpp"
@@ -47,6 +49,34 @@ nlohmann::json regions_document(const Segmentation& segmentation) {
   return {{"size", {segmentation.labels.cols, segmentation.labels.rows}}, {"regions", regions}, {"borders", borders}};
 }
 
+/// Edges with their ways simplified to half a pixel; nodes by index.
+nlohmann::json topology_document(const VoronoiGraph& graph) {
+  static const std::map<VoronoiNodeKind, const char*> kKindWords = {{VoronoiNodeKind::kDeadEnd, "dead end"},
+                                                                    {VoronoiNodeKind::kJunction, "junction"},
+                                                                    {VoronoiNodeKind::kIsolated, "isolated"},
+                                                                    {VoronoiNodeKind::kLoop, "loop"}};
+  nlohmann::json nodes = nlohmann::json::array(), edges = nlohmann::json::array();
+  for (const VoronoiNode& node : graph.nodes)
+    nodes.push_back({{"at", pair_of(node.p_px)},
+                     {"clearance", node.clearance_px},
+                     {"kind", kKindWords.at(node.kind)},
+                     {"edges", node.edges}});
+  for (const VoronoiEdge& edge : graph.edges) {
+    std::vector<cv::Point> way, simple;
+    for (const Point2& p : edge.path_px) way.emplace_back(cvRound(p.x()), cvRound(p.y()));
+    cv::approxPolyDP(way, simple, 0.5, false);
+    nlohmann::json path = nlohmann::json::array();
+    for (const cv::Point& p : simple) path.push_back({p.x, p.y});
+    edges.push_back({{"from", edge.from},
+                     {"to", edge.to},
+                     {"length", edge.length_px},
+                     {"min_clearance", edge.min_clearance_px},
+                     {"mean_clearance", edge.mean_clearance_px},
+                     {"path", std::move(path)}});
+  }
+  return {{"nodes", nodes}, {"edges", edges}};
+}
+
 Result<Ok> segment_picture(const SegmentArguments& arguments) {
   const Result<cv::Mat> picture = read_map_picture(arguments.picture);
   if (!picture) return picture.error();
@@ -55,14 +85,16 @@ Result<Ok> segment_picture(const SegmentArguments& arguments) {
   const Result<Segmentation> segmentation =
       arguments.maoris ? segment_maoris(*free_space, maoris_params(arguments.kind)) : segment(*free_space);
   if (!segmentation) return segmentation.error();
+  nlohmann::json document = regions_document(*segmentation);
   if (!arguments.topology.empty()) {
     const Result<VoronoiGraph> graph = voronoi_graph(*free_space);
     if (!graph) return graph.error();
     const Result<Ok> drawn = write_picture(arguments.topology, draw_voronoi_graph(*graph, *free_space));
     if (!drawn) return drawn;
+    document["topology"] = topology_document(*graph);
   }
   if (!arguments.regions.empty()) {
-    const Result<Ok> written = write_text(arguments.regions, regions_document(*segmentation).dump());
+    const Result<Ok> written = write_text(arguments.regions, document.dump());
     if (!written) return written;
   }
   if (!arguments.preview.empty()) {
@@ -79,9 +111,11 @@ void add_segment(CLI::App& app, Outcome& outcome) {
   auto* command = app.add_subcommand("segment", "Split the free space of a map into rooms and corridors");
   command->add_option("map", arguments->picture, "picture of a map; free space is brighter than gray 250")->required();
   command->add_option("-o,--output", arguments->output, "label image, 16 bit, 0 = no region")->required();
-  command->add_option("--json", arguments->regions, "regions and the borders between them, as JSON");
+  command->add_option("--json", arguments->regions,
+                      "regions and the borders between them, with --topology also its graph, as JSON");
   command->add_option("--preview", arguments->preview, "PNG with one colour a region");
-  command->add_option("--topology", arguments->topology, "PNG with the trimmed Voronoi graph");
+  command->add_option("--topology", arguments->topology,
+                      "PNG with the trimmed Voronoi graph; the graph itself goes into --json");
   command->add_option("--kind", arguments->kind, "what kind of map it is; only MAORIS needs to know")
       ->transform(CLI::CheckedTransformer(std::map<std::string, MapKind>{
           {"sketch", MapKind::kSketch}, {"robot", MapKind::kRobot}, {"layout", MapKind::kLayout}}));

@@ -19,7 +19,8 @@ enum class Verdict {
 struct RegionPair {
   int label_a = 0;        ///< on the sketch (or layout)
   int label_b = 0;        ///< on the other map
-  double confidence = 0;  ///< 0..1, calibrated: of pairs said to be 0.9 sure, nine in ten are right
+  double confidence = 0;  ///< 0..1, calibrated: of pairs said to be 0.9 sure, nine in ten are right, among maps that
+                          ///< may be of other buildings; in a doubtful matching at most 0.75, but for what people said
   Verdict verdict = Verdict::kProposed;
 };
 
@@ -29,12 +30,16 @@ struct Pin {
   Point2 p_b_px = Point2::Zero();
 };
 
+/// Below this `Matching::same_building` says that the two maps do not seem to belong together.
+constexpr double kFitsFrom = 0.5;
+
 /// Region correspondences between two segmented maps, with doubt made visible.
 struct Matching {
   std::vector<RegionPair> pairs;        ///< worst confidence first
   std::vector<RegionPair> runner_up;    ///< the second-best hypothesis, empty if there is none
   double margin = 0;                    ///< how much better the best is than the runner-up, 0..1
   bool doubtful = false;                ///< the whole matching should be looked at by a person
+  double same_building = 0;             ///< 0..1, calibrated: that both are maps of one building at all
   std::optional<int> next_pin_label_a;  ///< the region whose tap would tell most
   Eigen::Matrix2d turn_b_a =
       Eigen::Matrix2d::Identity();  ///< how map a is turned (and mirrored) over b, pictures with y down

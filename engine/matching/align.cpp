@@ -89,6 +89,7 @@ std::vector<MapAlignment> choose(std::vector<std::vector<MapAlignment>>& by_turn
   const auto better = [](const MapAlignment& one, const MapAlignment& two) { return one.score > two.score; };
   std::vector<MapAlignment> chosen, rest;
   for (std::vector<MapAlignment>& turned : by_turn) {
+    if (turned.empty()) continue;
     std::stable_sort(turned.begin(), turned.end(), better);
     chosen.push_back(turned.front());
     rest.insert(rest.end(), turned.begin() + 1, turned.end());
@@ -108,10 +109,10 @@ std::vector<MapAlignment> choose(std::vector<std::vector<MapAlignment>>& by_turn
 
 }  // namespace
 
-AlignmentSearch::AlignmentSearch(const MapRaster& a, const MapRaster& b, bool allow_mirror) : a_(a), b_(b) {
+AlignmentSearch::AlignmentSearch(const MapRaster& a, const MapRaster& b, Facing facing) : a_(a), b_(b) {
   const ShiftCorrelation correlation(b);
   const double scale = std::sqrt(b.free_cells / std::max(1.0, a.free_cells));
-  for (int mirror = 0; mirror <= (allow_mirror ? 1 : 0); ++mirror)
+  for (int mirror = facing == Facing::kMirrored ? 1 : 0; mirror <= (facing == Facing::kAsDrawn ? 0 : 1); ++mirror)
     for (int quarter = 0; quarter < 4; ++quarter) {
       // Straighten a's walls, mirror, turn by quarters, then into b's wall direction; stretch along b's walls.
       const Eigen::Matrix2d flip = Eigen::Vector2d(mirror ? -1 : 1, 1).asDiagonal();

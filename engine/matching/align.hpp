@@ -15,14 +15,17 @@ struct MapAlignment {
   double score = 0;  ///< likeness of the two depth images under it, 0..1, less what the pins cost
 };
 
+/// Which sides of the drawing are laid over the other map.
+enum class Facing { kAsDrawn, kMirrored, kEither };
+
 /// All ways of laying one map over another, compared once, so that pins can be weighed again at every tap.
 ///
-/// The walls of both maps are made parallel, then the four quarter turns (eight with mirror images), a range of scales
-/// along both wall directions and all shifts are compared.
-/// Cost: to construct one Fourier transform a candidate, 15 ms and 3 MB altogether; to ask a few milliseconds.
+/// The walls of both maps are made parallel, then the four quarter turns (of the mirror image, too, or only), a range
+/// of scales along both wall directions and all shifts are compared. Cost: to construct one Fourier transform a
+/// candidate, 15 ms and 3 MB altogether; to ask a few milliseconds.
 class AlignmentSearch {
  public:
-  AlignmentSearch(const MapRaster& a, const MapRaster& b, bool allow_mirror);
+  AlignmentSearch(const MapRaster& a, const MapRaster& b, Facing facing);
 
   /// Candidate alignments, best first, different from each other.
   std::vector<MapAlignment> best(const std::vector<Pin>& pins, int count) const;

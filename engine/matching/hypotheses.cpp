@@ -48,14 +48,45 @@ HypothesisFinder::HypothesisFinder(const Segmentation& a, const Segmentation& b,
       b_(b),
       params_(params),
       alignments_(make_raster(a, kCoarse_cells, kCoarseSlope_cells), make_raster(b, kCoarse_cells, kCoarseSlope_cells),
-                  params.allow_mirror),
+                  params.allow_mirror ? Facing::kEither : Facing::kAsDrawn),
       bending_(make_raster(a, kFine_cells, kFineSlope_cells), make_raster(b, kFine_cells, kFineSlope_cells)),
       graph_a_(make_region_graph(a)),
-      graph_b_(make_region_graph(b)) {}
+      graph_b_(make_region_graph(b)) {
+  const AlignmentSearch mirrored(make_raster(a, kCoarse_cells, kCoarseSlope_cells),
+                                 make_raster(b, kCoarse_cells, kCoarseSlope_cells), Facing::kMirrored);
+  const Eigen::MatrixXi none = Eigen::MatrixXi::Zero(graph_a_.size(), graph_b_.size());
+  mirrored_score_ = find_among(mirrored, {}, {none, none}).front().score;
+}
 
 std::vector<Hypothesis> HypothesisFinder::find(const std::vector<Pin>& pins, const PairRules& rules) const {
+  return find_among(alignments_, pins, rules);
+}
+
+FitEvidence HypothesisFinder::weigh_fit(const std::vector<Hypothesis>& all) const {
+  const Hypothesis& best = all.front();
+  FitEvidence fit;
+  double matched = 0, likeness = 0;
+  for (int i = 0; i < graph_a_.size(); ++i)
+    if (const int j = best.structure.partner[static_cast<size_t>(i)]; j >= 0) {
+      matched += graph_a_.importance(i);
+      likeness += graph_a_.importance(i) * best.scores.likeness(i, j);
+    }
+  fit.likeness = matched > 0 ? likeness / matched : 0;
+  fit.explained = matched * covered(best.structure);
+  // The wrong side of the sheet: the mirror image, or the drawing as it is if the answer is mirrored itself.
+  const bool is_mirrored = best.turn_b_a.determinant() < 0;
+  double wrong_side = is_mirrored ? 0 : mirrored_score_;
+  for (const Hypothesis& other : all)
+    if ((other.turn_b_a.determinant() < 0) != is_mirrored) wrong_side = std::max(wrong_side, other.score);
+  fit.lead = best.score - wrong_side;
+  fit.regions = std::min(graph_a_.size(), graph_b_.size());
+  return fit;
+}
+
+std::vector<Hypothesis> HypothesisFinder::find_among(const AlignmentSearch& alignments, const std::vector<Pin>& pins,
+                                                     const PairRules& rules) const {
   std::vector<Hypothesis> all;
-  for (const MapAlignment& alignment : alignments_.best(pins, params_.candidates))
+  for (const MapAlignment& alignment : alignments.best(pins, params_.candidates))
     add_hypothesis(solve(alignment, pins, rules), all);
   sort_best_first(all);
   const size_t count = std::min(all.size(), static_cast<size_t>(kRefined));

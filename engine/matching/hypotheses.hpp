@@ -9,6 +9,7 @@
 #include "matching/match_params.hpp"
 #include "matching/region_graph.hpp"
 #include "matching/region_pairs.hpp"
+#include "matching/same_building.hpp"
 #include "matching/structure_match.hpp"
 #include "matching/warp.hpp"
 
@@ -49,7 +50,12 @@ class HypothesisFinder {
   /// Best first, no two with the same pairs.
   std::vector<Hypothesis> find(const std::vector<Pin>& pins, const PairRules& rules) const;
 
+  /// What the best of all says about the maps being of one building.
+  FitEvidence weigh_fit(const std::vector<Hypothesis>& all) const;
+
  private:
+  std::vector<Hypothesis> find_among(const AlignmentSearch& alignments, const std::vector<Pin>& pins,
+                                     const PairRules& rules) const;
   Hypothesis solve(const MapAlignment& alignment, const std::vector<Pin>& pins, const PairRules& rules) const;
   double covered(const StructureMatch& structure) const;
   MapAlignment laid_by_pairs(const Hypothesis& hypothesis) const;
@@ -59,6 +65,7 @@ class HypothesisFinder {
   AlignmentSearch alignments_;
   BendingPair bending_;
   RegionGraph graph_a_, graph_b_;
+  double mirrored_score_ = 0;  ///< of the best hypothesis with a mirrored, which is certainly wrong
 };
 
 }  // namespace smokemap

@@ -19,6 +19,7 @@
 #include "matching/next_tap.hpp"
 #include "matching/published.hpp"
 #include "matching/region_pairs.hpp"
+#include "matching/same_building.hpp"
 
 namespace smokemap {
 namespace {
@@ -27,7 +28,9 @@ constexpr double kPinReach_px = 10;
 constexpr double kClearMargin = 0.25;  ///< from here on the runner-up does not matter
 constexpr double kDoubtfulMargin = 0.08;
 constexpr double kDoubtfulConfidence = 0.6;
-constexpr double kPinned = 0.97;  ///< a tap may miss the room that was meant
+constexpr double kUnknownFit = 0.5;    ///< the published methods do not ask
+constexpr double kMostInDoubt = 0.75;  ///< nothing is shown as sure while the whole is doubtful
+constexpr double kPinned = 0.97;       ///< a tap may miss the room that was meant
 
 std::optional<int> region_near(const Segmentation& map, const Point2& p_px) {
   const int reach = static_cast<int>(kPinReach_px);
@@ -143,14 +146,19 @@ void finish(const Segmentation& a, const PairRules& rules, const std::vector<Reg
       matching.margin = std::clamp((all.front().score - all[i].score) / kClearMargin, 0.0, 1.0);
       break;
     }
-  for (RegionPair& pair : matching.pairs) {
-    const bool bound = rules.forced(pair.label_a - 1, pair.label_b - 1) != 0;
-    pair.confidence = bound ? kPinned : confidence_of(weigh_pair(pair, all));
-  }
+  const auto is_bound = [&](const RegionPair& pair) { return rules.forced(pair.label_a - 1, pair.label_b - 1) != 0; };
+  for (RegionPair& pair : matching.pairs)
+    pair.confidence = is_bound(pair) ? kPinned : confidence_of(weigh_pair(pair, all));
   for (RegionPair& pair : matching.runner_up)
     pair.confidence = (1 - matching.margin) * 0.5;  // it is right at most when the best is wrong
-  matching.doubtful =
-      matching.margin < kDoubtfulMargin / kClearMargin || overall_confidence(a, matching.pairs) < kDoubtfulConfidence;
+  matching.doubtful = matching.margin < kDoubtfulMargin / kClearMargin ||
+                      overall_confidence(a, matching.pairs) < kDoubtfulConfidence || matching.same_building < kFitsFrom;
+  for (std::vector<RegionPair>* pairs : {&matching.pairs, &matching.runner_up})
+    for (RegionPair& pair : *pairs) {
+      if (is_bound(pair)) continue;
+      pair.confidence *= matching.same_building;
+      if (matching.doubtful) pair.confidence = std::min(pair.confidence, kMostInDoubt);
+    }
   keep_verdicts(verdicts, matching);
   std::vector<WeighedAnswer> answers;
   for (const Hypothesis& hypothesis : all)
@@ -188,6 +196,7 @@ Matching match_published(const Segmentation& a, const Segmentation& b, const Pai
     for (int j = 0; j < rules.forced.cols(); ++j)
       if (rules.forced(i, j)) matching.pairs.push_back({i + 1, j + 1, kPinned, Verdict::kProposed});
   matching.doubtful = true;
+  matching.same_building = kUnknownFit;
   matching.turn_b_a = turn_of_pairs(a, b, matching.pairs);
   keep_verdicts(verdicts, matching);
   WeighedAnswer only{std::vector<int>(a.regions.size(), -1), 1};
@@ -227,7 +236,10 @@ Result<Matching> Matcher::solve(const std::vector<Pin>& pins, const std::vector<
   if (!rules) return rules.error();
   if (!maps_->finder) return match_published(a, b, *rules, verdicts, maps_->params.method);
   Matching matching;
-  finish(a, *rules, verdicts, maps_->finder->find(pins_and_confirmed(a, b, pins, verdicts), *rules), matching);
+  const std::vector<Hypothesis> all = maps_->finder->find(pins_and_confirmed(a, b, pins, verdicts), *rules);
+  const auto taps = (rules->forced.rowwise().maxCoeff().array() > 0).count();
+  matching.same_building = same_building(maps_->finder->weigh_fit(all), static_cast<int>(taps));
+  finish(a, *rules, verdicts, all, matching);
   return matching;
 }
 

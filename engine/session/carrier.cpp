@@ -63,7 +63,10 @@ Transferred Carrier::from_sketch(const Point2& p_px) const {
   if (!t.p) return t;
   t.sigma = std::hypot(t.sigma, on_plan.sigma / scale * board_.layout->layout.frame().metres_per_pixel);
   t.confidence *= on_plan.confidence;
-  if (sketch_.match && sketch_.match->matching.doubtful && t.reason.empty())
+  if (!sketch_.match || !t.reason.empty()) return t;
+  if (sketch_.match->matching.same_building < kFitsFrom)
+    t.reason = "this sketch does not seem to show the building of the plan";
+  else if (sketch_.match->matching.doubtful)
     t.reason = "the match of sketch and plan is doubtful";
   return t;
 }

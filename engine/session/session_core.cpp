@@ -109,6 +109,8 @@ std::vector<Alert> SessionCore::alerts() const {
     alerts.push_back({"no-scale", "The plan has no scale yet: a guess is used.", false});
   if (merged_->fit.verdict == "does not fit")
     alerts.push_back({"no-fit", "This plan does not seem to fit this building.", true});
+  if (sketch_.match && sketch_.to_plan && sketch_.match->matching.same_building < kFitsFrom)
+    alerts.push_back({"sketch-no-fit", "The sketch does not seem to show the building of the plan.", false});
   if (!merge_complaint_.empty())
     alerts.push_back({"merge", "The map could not be corrected just now: " + merge_complaint_, false});
   return alerts;

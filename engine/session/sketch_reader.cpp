@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kPlanLongSidePx = 1100;  // enough for rooms, quick enough for taps
 constexpr int kTapReachPx = 12;
+constexpr auto kNoFit = "This sketch does not seem to show the building of the plan. Tap two rooms that you know.";
 
 std::vector<RegionView> views_of(const Segmentation& segmentation, double scale) {
   std::vector<RegionView> views;
@@ -46,6 +47,38 @@ std::vector<Pin> pins_of(const std::vector<PairVerdict>& verdicts, double scale)
   return pins;
 }
 
+bool is_same_drawing(const SketchMap& one, const SketchMap& two) {
+  return one.width_px == two.width_px && one.height_px == two.height_px &&
+         std::equal(one.strokes.begin(), one.strokes.end(), two.strokes.begin(), two.strokes.end(),
+                    [](const Stroke& a, const Stroke& b) {
+                      return a.kind == b.kind && a.width_px == b.width_px && a.points_px == b.points_px;
+                    });
+}
+
+SketchRegions read_regions(const SketchMap& sketch) {
+  SketchRegions regions;
+  regions.drawn = sketch;
+  if (sketch.strokes.empty()) {
+    regions.complaint = "nothing is drawn yet";
+    return regions;
+  }
+  auto clean = clean_sketch(sketch, {});
+  if (!clean) {
+    regions.complaint = regions.warning = clean.error().message;
+    return regions;
+  }
+  regions.gaps = std::move(clean->gaps);
+  if (!clean->warnings.empty()) regions.warning = clean->warnings.front();
+  auto segmentation = segment_by_constrictions(clean->free_space, matching_segmentation_params());
+  if (!segmentation) {
+    regions.complaint = regions.warning = segmentation.error().message;
+    return regions;
+  }
+  regions.segmentation = std::move(*segmentation);
+  regions.views = views_of(regions.segmentation, 1.0);
+  return regions;
+}
+
 }  // namespace
 
 int label_at(const Segmentation& segmentation, const Point2& p_px, int reach_px) {
@@ -68,6 +101,7 @@ const PlanRegions* SketchReader::plan_regions(const std::shared_ptr<const Layout
   if (layout == layout_) return plan_ ? &*plan_ : nullptr;
   layout_ = layout;
   plan_.reset();
+  matcher_.reset();
   if (!layout) return nullptr;
   PlanRegions plan;
   plan.pixels_per_layout_px =
@@ -82,34 +116,47 @@ const PlanRegions* SketchReader::plan_regions(const std::shared_ptr<const Layout
   return &*plan_;
 }
 
+const SketchRegions& SketchReader::sketch_regions(const SketchMap& sketch) {
+  if (!sketch_ || !is_same_drawing(sketch_->drawn, sketch)) {
+    sketch_ = read_regions(sketch);
+    matcher_.reset();
+  }
+  return *sketch_;
+}
+
+const Result<Matcher>& SketchReader::matcher() {
+  if (!matcher_) matcher_ = Matcher::create(sketch_->segmentation, plan_->segmentation);
+  return *matcher_;
+}
+
 SketchReading SketchReader::read(const SketchMap& sketch, const std::shared_ptr<const LayoutView>& layout,
                                  const std::vector<PairVerdict>& verdicts) {
   SketchReading reading;
   auto view = std::make_shared<SketchView>();
-  view->sketch = sketch;
   reading.sketch = view;
   const PlanRegions* plan = plan_regions(layout);
   auto match_view = std::make_shared<MatchView>();
   if (plan) match_view->map_regions = plan->views, reading.match = match_view;
+  const SketchRegions& regions = sketch_regions(sketch);
+  view->sketch = sketch;
+  view->regions = regions.views;
+  view->gaps = regions.gaps;
+  view->warning = regions.warning;
   const auto give_up = [&](const std::string& why) {
     view->warning = sketch.strokes.empty() ? "" : why;
     reading.no_transfer = why;
     return reading;
   };
-  if (sketch.strokes.empty()) return give_up("nothing is drawn yet");
-  const auto clean = clean_sketch(sketch, {});
-  if (!clean) return give_up(clean.error().message);
-  view->gaps = clean->gaps;
-  if (!clean->warnings.empty()) view->warning = clean->warnings.front();
-  const auto regions = segment_by_constrictions(clean->free_space, matching_segmentation_params());
-  if (!regions) return give_up(regions.error().message);
-  view->regions = views_of(*regions, 1.0);
+  if (!regions.complaint.empty()) return give_up(regions.complaint);
   if (!plan) return give_up(layout ? "no rooms were found on the plan" : "there is no plan to match the sketch with");
+  const Result<Matcher>& matched = matcher();
+  if (!matched) return give_up(matched.error().message);
   const std::vector<Pin> pins = pins_of(verdicts, plan->pixels_per_layout_px);
-  const auto matching = match(*regions, plan->segmentation, pins, by_label(verdicts, *regions, *plan));
+  const auto matching = matched->solve(pins, by_label(verdicts, regions.segmentation, *plan));
   if (!matching) return give_up(matching.error().message);
   match_view->matching = *matching;
-  reading.to_plan = std::make_shared<const PointTransfer>(*regions, plan->segmentation, *matching, pins);
+  if (matching->same_building < kFitsFrom) view->warning = kNoFit;
+  reading.to_plan = std::make_shared<const PointTransfer>(regions.segmentation, plan->segmentation, *matching, pins);
   reading.pixels_per_layout_px = plan->pixels_per_layout_px;
   return reading;
 }

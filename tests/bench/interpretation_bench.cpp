@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "segmentation/constriction.hpp"
+#include "tests/bench/foreign_figures.hpp"
 #include "tests/bench/matching_figures.hpp"
 #include "tests/bench/segmentation_figures.hpp"
 
@@ -57,6 +58,14 @@ Result<Ok> print_judged(const std::filesystem::path& data, bool every) {
   const auto judged = bench::read_judged_sets((data / "sketch_matching").string(), segment_for_matching);
   if (!judged) return judged.error();
   print_methods(*judged, every);
+  std::printf("\nIs the sketch of this building at all?\n");
+  std::vector<Segmentation> others;
+  if (std::filesystem::is_directory(data / "segmentation" / "robot_maps")) {
+    auto maps = bench::read_robot_maps((data / "segmentation").string(), segment_for_matching);
+    if (!maps) return maps.error();
+    others = std::move(*maps);
+  }
+  bench::print_foreign_figures(*judged, others);
   return Ok{};
 }
 
@@ -76,7 +85,10 @@ int main(int argc, char** argv) {
   std::printf("Rooms on generated plans\n");
   bench::print_generated_segmentation();
   std::printf("\nPairs and points on generated sketches (seeds 1 to %d and on)\n", generated);
-  print_methods(bench::generated_pairs(generated, 1, segment_for_matching), every);
+  const auto sketches = bench::generated_pairs(generated, 1, segment_for_matching);
+  print_methods(sketches, every);
+  std::printf("\nIs the sketch of this building at all?\n");
+  bench::print_foreign_figures(sketches, {});
   const Result<Ok> done = data.empty() ? Result<Ok>(Ok{}) : print_judged(data, every);
   if (!done) std::printf("%s\n", done.error().message.c_str());
   std::printf("\npeak memory of all this %.0f MB\n", peak_mb());

@@ -251,21 +251,6 @@ void judge_transfer(const JudgedPair& truth, const PointTransfer& transfer, cons
   figures.position_error = median_of(errors);
 }
 
-void print_reliability(const std::vector<std::pair<double, bool>>& said) {
-  std::printf("    reliability (said: right of pairs):");
-  for (const auto& [low, high] : {std::pair(0.0, 0.3), {0.3, 0.5}, {0.5, 0.7}, {0.7, 0.9}, {0.9, 1.01}}) {
-    int right = 0, all = 0;
-    for (const auto& [confidence, is_right] : said)
-      if (confidence >= low && confidence < high) all += 1, right += is_right;
-    std::printf("  %.1f-%.1f %d/%d=%.2f", low, std::min(1.0, high), right, all, all ? double(right) / all : 0.0);
-  }
-  double ordered = 0, compared = 0;  // of a right and a wrong pair, the right one is said to be surer
-  for (const auto& [sure, is_right] : said)
-    for (const auto& [other, other_right] : said)
-      if (is_right && !other_right) compared += 1, ordered += sure > other ? 1 : sure == other ? 0.5 : 0;
-  std::printf("; right ones surer than wrong ones %.2f\n", compared > 0 ? ordered / compared : 1.0);
-}
-
 /// Sums over pairs of one set and annotator.
 struct FigureSums {
   double count = 0, points_f1 = 0, room_hit = 0, untapped = 0, answered = 0, error = 0, ms = 0, slowest_ms = 0;
@@ -332,6 +317,21 @@ PairFigures judge_answer(const JudgedPair& pair, const Matching& matching, const
   judge_pairs(pair, matching, figures);
   judge_transfer(pair, transfer, {}, figures);
   return figures;
+}
+
+void print_reliability(const std::vector<std::pair<double, bool>>& said) {
+  std::printf("    reliability (said: right of pairs):");
+  for (const auto& [low, high] : {std::pair(0.0, 0.3), {0.3, 0.5}, {0.5, 0.7}, {0.7, 0.9}, {0.9, 1.01}}) {
+    int right = 0, all = 0;
+    for (const auto& [confidence, is_right] : said)
+      if (confidence >= low && confidence < high) all += 1, right += is_right;
+    std::printf("  %.1f-%.1f %d/%d=%.2f", low, std::min(1.0, high), right, all, all ? double(right) / all : 0.0);
+  }
+  double ordered = 0, compared = 0;  // of a right and a wrong pair, the right one is said to be surer
+  for (const auto& [sure, is_right] : said)
+    for (const auto& [other, other_right] : said)
+      if (is_right && !other_right) compared += 1, ordered += sure > other ? 1 : sure == other ? 0.5 : 0;
+  std::printf("; right ones surer than wrong ones %.2f\n", compared > 0 ? ordered / compared : 1.0);
 }
 
 Result<std::vector<JudgedPair>> read_judged_sets(const std::string& folder, const Segmenter& segmenter) {

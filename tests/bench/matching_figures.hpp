@@ -35,6 +35,9 @@ PairFigures judge(const JudgedPair& pair, int taps, const MatchParams& params, T
 /// Figures of an answer made elsewhere.
 PairFigures judge_answer(const JudgedPair& pair, const Matching& matching, const std::vector<Pin>& pins);
 
+/// How often what was said came true, and whether right pairs were said to be surer than wrong ones.
+void print_reliability(const std::vector<std::pair<double, bool>>& said);
+
 /// The table of the matching part, one line a set, annotator and number of taps, with the reliability table below.
 void print_matching_figures(const std::vector<JudgedPair>& pairs, const std::vector<int>& taps,
                             const MatchParams& params, bool every_pair, Taps choice = Taps::kFarApart);

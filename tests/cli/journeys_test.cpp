@@ -95,7 +95,8 @@ TEST(Journey, OfTwoMapsEndsInPairsAndCarriedPoints) {
   const SmokemapFolder here;
   here.write_map("a.png");
   here.write_map("b.png", 12);
-  Ran ran = here.run({"segment", "a.png", "-o", "labels.png", "--json", "regions.json", "--preview", "preview.png"});
+  Ran ran = here.run({"segment", "a.png", "-o", "labels.png", "--json", "regions.json", "--preview", "preview.png",
+                      "--topology", "graph.png"});
   ASSERT_EQ(ran.status, 0) << ran.errors;
   const cv::Mat labels = cv::imread(here.path("labels.png"), cv::IMREAD_UNCHANGED);
   EXPECT_EQ(labels.type(), CV_16UC1);
@@ -105,6 +106,15 @@ TEST(Journey, OfTwoMapsEndsInPairsAndCarriedPoints) {
   EXPECT_NE(right, 0);
   EXPECT_NE(left, right) << "the door parts two rooms";
   EXPECT_GE(parsed(here.text("regions.json"))["regions"].size(), 2u);
+  const json graph = parsed(here.text("regions.json"))["topology"];
+  ASSERT_GE(graph["nodes"].size(), 2u);
+  ASSERT_GE(graph["edges"].size(), 1u);
+  for (const json& edge : graph["edges"]) {
+    EXPECT_EQ(edge["path"].front(), graph["nodes"][edge["from"].get<size_t>()]["at"]);
+    EXPECT_EQ(edge["path"].back(), graph["nodes"][edge["to"].get<size_t>()]["at"]);
+    EXPECT_GT(edge["length"], 0);
+  }
+  EXPECT_TRUE(here.has("graph.png"));
 
   here.write("points.json", R"({"points": [[60, 60], [250, 180], [5, 5]]})");
   here.write("pins.json", R"({"pins": [{"sketch": [40, 40], "map": [40, 40]}]})");

@@ -34,7 +34,7 @@ TEST(AlignmentSearch, LaysAMapOverItself) {
   for (std::uint64_t seed = 1; seed < 4; ++seed) {
     const cv::Mat rooms = office_rooms(seed);
     const MapRaster raster = raster_of(rooms);
-    const MapAlignment best = AlignmentSearch(raster, raster, false).best({}, 1).front();
+    const MapAlignment best = AlignmentSearch(raster, raster, Facing::kAsDrawn).best({}, 1).front();
     EXPECT_LT(worst_corner(best.T_b_a_px, Eigen::Affine2d::Identity(), rooms.size()), 2 * raster.px_per_cell);
     EXPECT_GT(best.score, 0.98);
   }
@@ -48,7 +48,7 @@ TEST(AlignmentSearch, FindsQuarterTurnsAndScale) {
   Eigen::Affine2d truth = Eigen::Affine2d::Identity();  // p -> 1.7 * (rows - 1 - y, x)
   truth.linear() << 0, -1.7, 1.7, 0;
   truth.translation() = Point2(1.7 * (rooms.rows - 1), 0);
-  const MapAlignment best = AlignmentSearch(raster_of(rooms), raster_of(turned), false).best({}, 1).front();
+  const MapAlignment best = AlignmentSearch(raster_of(rooms), raster_of(turned), Facing::kAsDrawn).best({}, 1).front();
   EXPECT_LT(worst_corner(best.T_b_a_px, truth, rooms.size()), 3 * raster_of(turned).px_per_cell);
 }
 
@@ -57,7 +57,8 @@ TEST(AlignmentSearch, TakesMirrorImagesOnlyWhereAllowed) {
   cv::Mat mirrored;
   cv::flip(rooms, mirrored, 1);
   const MapRaster a = raster_of(mirrored), b = raster_of(rooms);
-  const auto without = AlignmentSearch(a, b, false).best({}, 8), with = AlignmentSearch(a, b, true).best({}, 8);
+  const auto without = AlignmentSearch(a, b, Facing::kAsDrawn).best({}, 8),
+             with = AlignmentSearch(a, b, Facing::kEither).best({}, 8);
   for (const MapAlignment& alignment : without) EXPECT_GT(alignment.T_b_a_px.linear().determinant(), 0);
   EXPECT_LT(with.front().T_b_a_px.linear().determinant(), 0);
   EXPECT_GT(with.front().score, without.front().score);
@@ -65,7 +66,7 @@ TEST(AlignmentSearch, TakesMirrorImagesOnlyWhereAllowed) {
 
 TEST(AlignmentSearch, GivesDifferentCandidatesOfEveryTurnBestFirst) {
   const MapRaster raster = raster_of(office_rooms(6));
-  const auto found = AlignmentSearch(raster, raster, false).best({}, 8);
+  const auto found = AlignmentSearch(raster, raster, Facing::kAsDrawn).best({}, 8);
   EXPECT_EQ(found.size(), 8u);
   std::set<int> turns;
   for (size_t i = 0; i < found.size(); ++i) {
@@ -82,7 +83,7 @@ TEST(AlignmentSearch, GivesDifferentCandidatesOfEveryTurnBestFirst) {
 TEST(AlignmentSearch, ObeysPinsThatContradictTheLooks) {
   const cv::Mat rooms = office_rooms(7);
   const MapRaster raster = raster_of(rooms);
-  const AlignmentSearch search(raster, raster, false);
+  const AlignmentSearch search(raster, raster, Facing::kAsDrawn);
   const cv::Rect box = cv::boundingRect(rooms != 0);
   const Point2 low(box.x, box.y), high(box.x + box.width, box.y + box.height), sum = low + high;
   const std::vector<Pin> upside_down = {{low, sum - low}, {high, sum - high}};

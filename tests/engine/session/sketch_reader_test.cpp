@@ -108,5 +108,62 @@ TEST(LabelAt, IsTheNearestRegionWithinReach) {
   EXPECT_EQ(label_at(segmentation, {std::nan(""), 5}, 3), 0);
 }
 
+/// A long corridor with six rooms on its upper side: nothing like the plan.
+SketchMap six_rooms() {
+  SketchMap sketch;
+  sketch.width_px = 1000, sketch.height_px = 400;
+  sketch.strokes = {pen("outline", {{40, 40}, {940, 40}, {940, 340}, {40, 340}, {40, 40}}),
+                    pen("corridor", {{40, 250}, {60, 250}})};
+  for (int room = 0; room < 6; ++room) {
+    const double x = 40 + 150 * room, n = room;
+    sketch.strokes.push_back(pen("wall" + std::to_string(room), {{x, 40}, {x, 250}}));
+    sketch.strokes.push_back(pen("front" + std::to_string(room), {{x + 60 + n, 250}, {x + 150, 250}}));
+    sketch.strokes.push_back(pen("jamb" + std::to_string(room), {{x, 250}, {x + 10, 250}}));
+  }
+  return sketch;
+}
+
+TEST(SketchReader, SaysThatASketchIsNotOfThePlan) {
+  SketchReader reader;
+  const SketchReading reading = reader.read(six_rooms(), two_room_plan(), {});
+  ASSERT_TRUE(reading.match);
+  const Matching& matching = reading.match->matching;
+  EXPECT_LT(matching.same_building, kFitsFrom);
+  EXPECT_TRUE(matching.doubtful);
+  EXPECT_NE(reading.sketch->warning.find("does not seem to show"), std::string::npos) << reading.sketch->warning;
+  for (const RegionPair& pair : matching.pairs) EXPECT_LT(pair.confidence, 0.5);
+}
+
+TEST(SketchReader, AnswersATapAsOneWouldThatReadsEverythingAnew) {
+  SketchReader warm;
+  const auto plan = two_room_plan();
+  (void)warm.read(two_rooms(), plan, {});
+  SketchMap sketch = two_rooms();
+  for (const Verdict verdict : {Verdict::kConfirmed, Verdict::kRejected, Verdict::kProposed}) {
+    const std::vector<PairVerdict> said = {{{220, 350}, {560, 350}, verdict}};
+    const SketchReading now = warm.read(sketch, plan, said), anew = SketchReader().read(sketch, plan, said);
+    ASSERT_TRUE(now.match && anew.match);
+    ASSERT_EQ(now.match->matching.pairs.size(), anew.match->matching.pairs.size());
+    for (std::size_t i = 0; i < now.match->matching.pairs.size(); ++i)
+      EXPECT_EQ(now.match->matching.pairs[i].confidence, anew.match->matching.pairs[i].confidence);
+    EXPECT_EQ(now.sketch->warning, anew.sketch->warning);
+    EXPECT_EQ(now.sketch->gaps.size(), anew.sketch->gaps.size());
+  }
+  sketch.strokes.push_back(pen("third", {{350, 350}, {800, 350}}));  // drawn on: the old rooms must not stay
+  EXPECT_EQ(warm.read(sketch, plan, {}).sketch->regions.size(),
+            SketchReader().read(sketch, plan, {}).sketch->regions.size());
+  sketch.strokes.clear();
+  EXPECT_TRUE(warm.read(sketch, plan, {}).sketch->regions.empty());
+}
+
+TEST(SketchReader, TakesAnotherPlanWithTheSameDrawing) {
+  SketchReader reader;
+  ASSERT_TRUE(reader.read(two_rooms(), two_room_plan(), {}).to_plan);
+  EXPECT_FALSE(reader.read(two_rooms(), nullptr, {}).to_plan);
+  const SketchReading again = reader.read(two_rooms(), two_room_plan(), {});
+  EXPECT_TRUE(again.to_plan);
+  EXPECT_EQ(again.sketch->regions.size(), 2u);
+}
+
 }  // namespace
 }  // namespace smokemap
