@@ -14,6 +14,7 @@ constexpr double kTallestLetter = 0.06;  ///< of the long side
 constexpr double kUsualLetter = 0.018;   ///< larger ones are titles, and stand alone
 constexpr int kSmallestLetterPx = 5;
 constexpr double kLetterGap = 0.5;      ///< of the letter height: words are wider apart, walls between doors too
+constexpr int kLeastLetters = 3;        ///< light ones on a dark bar
 constexpr double kLargestBlock = 0.05;  ///< of the long side: signs; larger are headers
 constexpr double kLargestHole = 0.02;   ///< of the long side: the white part of a pictogram
 
@@ -111,6 +112,16 @@ cv::Mat without_holes(const cv::Mat& ink, double largest_px) {
   return filled;
 }
 
+/// How many pieces of the mask are at least so large.
+int pieces_of(const cv::Mat& mask, double least_px) {
+  cv::Mat labels, stats, centroids;
+  const int count = cv::connectedComponentsWithStats(mask, labels, stats, centroids, 8, CV_32S);
+  int large = 0;
+  for (int label = 1; label < count; ++label)
+    large += std::max(stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT)) >= least_px;
+  return large;
+}
+
 }  // namespace
 
 cv::Mat find_text(const cv::Mat& ink) {
@@ -177,6 +188,36 @@ void add_dots(cv::Mat& blocks, const cv::Mat& ink, double wall_px, int rim) {
 }
 
 }  // namespace
+
+cv::Mat find_headers(const cv::Mat& ink) {
+  const double side = std::max(ink.rows, ink.cols);
+  const int frame = static_cast<int>(std::lround(std::max(3.0, 0.006 * side)));  // thinner lines lead away from it
+  cv::Mat bars;
+  cv::morphologyEx(without_holes(ink, kTallestLetter * side), bars, cv::MORPH_OPEN,
+                   cv::getStructuringElement(cv::MORPH_RECT, {frame, frame}));
+  std::vector<std::vector<cv::Point>> outlines;
+  cv::findContours(bars, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_SIMPLE);
+  cv::Mat headers = cv::Mat::zeros(ink.size(), CV_8UC1);
+  for (const auto& outline : outlines) {
+    const cv::RotatedRect around = cv::minAreaRect(outline);
+    const double large = std::max(around.size.width, around.size.height) + 1,
+                 small = std::min(around.size.width, around.size.height) + 1;
+    if (small < 0.008 * side || large < 3 * small) continue;
+    if (cv::contourArea(outline) < 0.85 * (large - 1) * (small - 1)) continue;
+    const cv::Rect box = cv::boundingRect(outline);
+    cv::Mat shape = cv::Mat::zeros(box.size(), CV_8UC1);
+    cv::fillPoly(shape, std::vector<std::vector<cv::Point>>{outline}, cv::Scalar(255), cv::LINE_8, 0, -box.tl());
+    const int rim = 2 * static_cast<int>(std::lround(0.08 * small)) + 3;  // where frames of windows touch it
+    cv::copyMakeBorder(shape, shape, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+    cv::erode(shape, shape, cv::getStructuringElement(cv::MORPH_RECT, {rim, rim}));
+    const cv::Mat letters = shape({1, 1, box.width, box.height}) & (ink(box) == 0);
+    const double light = static_cast<double>(cv::countNonZero(letters)) / std::max(1, cv::countNonZero(shape));
+    if (light > 0.5 || pieces_of(letters, 0.25 * small) < kLeastLetters) continue;
+    cv::drawContours(headers, std::vector<std::vector<cv::Point>>{outline}, 0, cv::Scalar(255), cv::FILLED);
+  }
+  cv::dilate(headers, headers, cv::getStructuringElement(cv::MORPH_RECT, {7, 7}));
+  return headers;
+}
 
 cv::Mat find_blocks(const cv::Mat& ink, double wall_px) {
   const double side = std::max(ink.rows, ink.cols);

@@ -87,6 +87,7 @@ Legible legible_ink(const PaperView& view, const cv::Mat& covered, const LayoutP
   Legible out;
   cv::subtract(view.darkness, view.chroma, out.darkness);  // saturates at zero
   out.darkness.setTo(0, covered);
+  out.darkness.setTo(0, find_headers(ink_mask(out.darkness, params)));
   const cv::Mat ink = ink_mask(out.darkness, params);
   out.bar_division_px = find_scale_bar(ink);
   cv::Mat text;

@@ -1,8 +1,9 @@
-// How well and how fast plans are read: ./run bench layout [--seeds N] [--data DIR [--plans DIR]]
+// How well and how fast plans are read: ./run bench layout [--seeds N] [--data DIR [--plans DIR]] [--pictures DIR]
 // Random buildings drawn as evacuation plans (simulation; seeds 1, 2, ...), read flat ("clean"), turned, blurred and
 // noisy
 // ("scan"; every third one a gray copy), and photographed. With --data also pictures with known truth: NAME.json
-// (walls, doors, corners, rooms in pixels; "image" may name a picture below --plans) beside NAME.png or NAME.jpg. Then
+// (walls, doors, corners, rooms in pixels; "image" may name a picture below --plans) beside NAME.png or NAME.jpg.
+// --pictures keeps what was read. Then
 // how far confidences can be trusted, and what hostile files come to. Scores as in layout_figures.hpp. Taps = what a
 // scripted person would do from the first reading to the right plan: one tap for a false wall, one drag for a missing
 // one or for a corner of the sheet that is off by over half a percent. One thread's processor time.
@@ -76,13 +77,24 @@ PlanTruth truth_of(const LayoutMap& map, const std::function<Point2(const Point2
   return truth;
 }
 
-Row read_and_measure(const cv::Mat& picture, const PlanTruth& truth, LayoutReading* kept = nullptr) {
+std::string pictures_folder;  ///< where the pictures go that are read, if anywhere
+
+/// @param name  of the picture, in the line that is printed
+Row read_and_measure(const std::string& name, const cv::Mat& picture, const PlanTruth& truth,
+                     LayoutReading* kept = nullptr) {
+  if (!pictures_folder.empty()) cv::imwrite(pictures_folder + "/" + name + ".png", picture);
   Row row;
   const double begin = thread_seconds();
   auto reading = read_layout(picture);
   row.cpu_s = thread_seconds() - begin;
-  if (!reading) return row;
+  if (!reading) {
+    std::printf("  %-28s not read: %s\n", name.c_str(), reading.error().message.c_str());
+    return row;
+  }
   row.figures = bench::measure_plan(reading->layout, truth);
+  std::printf("  %-28s wall F1 %.3f corner %.3f room %.3f taps %d cpu %.2f s%s\n", name.c_str(),
+              row.figures.walls.value(), row.figures.corners.value(), row.figures.rooms.value(), row.figures.taps,
+              row.cpu_s, reading->layout.warnings.empty() ? "" : (", " + reading->layout.warnings.front()).c_str());
   if (kept) *kept = std::move(*reading);
   return row;
 }
@@ -124,7 +136,7 @@ bool add_renderings(int seed, Rows& rows) {
   const auto truth = true_layout(*plan, *picture);
   const auto flat = truth_of(truth.layout, [](const Point2& p) { return p; });
   LayoutReading reading;
-  Row clean = read_and_measure(picture->sheet, flat, &reading);
+  Row clean = read_and_measure("clean_" + std::to_string(seed), picture->sheet, flat, &reading);
   if (const auto& scale = reading.layout.scale)
     clean.scale_sigmas =
         std::abs(std::log(scale->metres_per_pixel / picture->metres_per_pixel)) / scale->relative_sigma;
@@ -133,7 +145,7 @@ bool add_renderings(int seed, Rows& rows) {
   cv::Mat turn;
   const cv::Mat scan = scan_of(picture->sheet, seed, turn);
   rows["scan"].push_back(read_and_measure(
-      scan, truth_of(truth.layout, [&](const Point2& p) {
+      "scan_" + std::to_string(seed), scan, truth_of(truth.layout, [&](const Point2& p) {
         return Point2(turn.at<double>(0, 0) * p.x() + turn.at<double>(0, 1) * p.y() + turn.at<double>(0, 2),
                       turn.at<double>(1, 0) * p.x() + turn.at<double>(1, 1) * p.y() + turn.at<double>(1, 2));
       })));
@@ -142,7 +154,7 @@ bool add_renderings(int seed, Rows& rows) {
   const cv::Mat inverse = cv::Mat(3, 3, CV_64F, const_cast<double*>(H.data())).inv();
   std::array<double, 9> back{};
   for (int i = 0; i < 9; ++i) back[static_cast<std::size_t>(i)] = inverse.at<double>(i / 3, i % 3);
-  Row photo = read_and_measure(picture->photo,
+  Row photo = read_and_measure("photo_" + std::to_string(seed), picture->photo,
                                truth_of(truth.layout, [&](const Point2& p) { return through(back, p); }), &reading);
   const double w = picture->sheet.cols - 1, h = picture->sheet.rows - 1;
   const std::array<Point2, 4> corners{Point2(0, 0), Point2(w, 0), Point2(w, h), Point2(0, h)};
@@ -177,11 +189,7 @@ void add_pictures(const std::string& data, const std::string& plans, Rows& rows)
     const auto bytes = read_file(picture->string(), PictureLimits{}.max_bytes);
     const auto decoded = bytes ? decode_picture(*bytes) : Result<cv::Mat>(bytes.error());
     if (!decoded) continue;
-    rows[file.parent_path().filename().string()].push_back(read_and_measure(*decoded, truth));
-    const auto& row = rows[file.parent_path().filename().string()].back();
-    std::printf("  %-28s wall F1 %.3f corner %.3f room %.3f taps %d cpu %.2f s\n", file.stem().c_str(),
-                row.figures.walls.value(), row.figures.corners.value(), row.figures.rooms.value(), row.figures.taps,
-                row.cpu_s);
+    rows[file.parent_path().filename().string()].push_back(read_and_measure(file.stem(), *decoded, truth));
   }
 }
 
@@ -228,6 +236,7 @@ int main(int argc, char** argv) {
   for (int i = 1; i + 1 < argc; i += 2) {
     if (std::strcmp(argv[i], "--data") == 0) data = argv[i + 1];
     if (std::strcmp(argv[i], "--plans") == 0) plans = argv[i + 1];
+    if (std::strcmp(argv[i], "--pictures") == 0) pictures_folder = argv[i + 1];
     if (std::strcmp(argv[i], "--seeds") == 0) seeds = std::atoi(argv[i + 1]);
   }
   Rows rows;
