@@ -14,7 +14,8 @@ namespace smokemap {
 namespace {
 
 constexpr int kWarmRounds = 1;
-constexpr double kWarmWay_m = 4.0;  ///< more new way than this is no small growth
+constexpr double kMostDoubted = 0.10;  ///< of the confirmed wall length, in a plan that fits
+constexpr double kWarmWay_m = 4.0;     ///< more new way than this is no small growth
 
 }  // namespace
 
@@ -40,10 +41,11 @@ Result<Ok> AcgParams::validate() const {
 
 /// Asked from both sides, for each alone can be fooled: how much of what was sensed the plan explains (furniture is not
 /// drawn), and on how much of the wall length that sensors spoke about plan and sensors agree (a plan bent onto the
-/// wrong walls has many that beams go through, and leaves many to be new).
+/// wrong walls has many that beams go through, and leaves many to be new). What fits, but might as well lie elsewhere,
+/// is doubtful.
 PlanFit AutoCompleteGraph::Impl::plan_fit(const SolveInput& input, const MergedMap& merged, const Learnt& l) const {
   constexpr int kViewsForAVerdict = 4;  // one view from the start explains little of any plan
-  double linked = 0, all = 0, agreed = 0, spoken = 0;
+  double linked = 0, all = 0, agreed = 0, spoken = 0, doubted = 0;
   int views = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (nodes.spaced()[i] && ++views)
@@ -52,14 +54,15 @@ PlanFit AutoCompleteGraph::Impl::plan_fit(const SolveInput& input, const MergedM
   for (const MergedWall& w : merged.walls) {
     const bool agrees = w.state == WallState::kConfirmed || w.state == WallState::kMoved;
     agreed += agrees ? w.evidence_m : 0;
+    doubted += agrees ? w.evidence_m * doubt_of(l, static_cast<std::size_t>(*w.layout_wall)) : 0;
     spoken += w.state != WallState::kUnseen ? w.evidence_m : 0;
   }
   PlanFit fit;
   if (all < 10 || views < kViewsForAVerdict || !l.aligned) return fit;
   fit.score = 0.5 * (std::min(1.0, linked / all) + (spoken > 0 ? agreed / spoken : 0));
-  fit.verdict = fit.score >= params.fits_above       ? "fits"
-                : fit.score >= params.fits_not_below ? "doubtful"
-                                                     : "does not fit";
+  fit.verdict = fit.score >= params.fits_above && doubted <= kMostDoubted * agreed ? "fits"
+                : fit.score >= params.fits_not_below                               ? "doubtful"
+                                                                                   : "does not fit";
   return fit;
 }
 
@@ -73,11 +76,12 @@ MergedMap AutoCompleteGraph::Impl::read_out(const PoseGraph& graph, const SolveI
   }
   std::vector<bool> there;
   if (plan && !l.state.corners.empty()) {
-    SolvedPlan solved{&layout, &*plan, &l.state, {}, l.linked_m, {}, l.sigma_m, input.corners};
+    SolvedPlan solved{&layout, &*plan, &l.state, {}, l.linked_m, {}, {}, l.sigma_m, input.corners};
     const std::vector<double> no_ends(plan->walls.size(), 0);
     solved.evidence = l.beams.read(nodes.views(), nodes.spaced(), *plan, l.state, no_ends).walls;
     judge_walls(solved.evidence, l);
     solved.wall_states = l.walls;
+    for (std::size_t w = 0; w < l.walls.size(); ++w) solved.doubt.push_back(doubt_of(l, w));
     read_out_plan(solved, params, out);
     for (const WallState s : l.walls) there.push_back(s != WallState::kMissing);
     out.anchors = read_anchors(l);
@@ -99,10 +103,6 @@ Result<Ok> AutoCompleteGraph::Impl::correct(Learnt& l, bool warm, const Progress
     if (const auto done = round(l, nodes.spaced(), sharpness, free_poses, progress, &last); !done) return done.error();
     progress.tell(0.6 + 0.3 * (k + 1) / params.rounds, "correcting plan and map");
   }
-  if (l.sigma_m.size() == plan->corners.size() && l.updates % params.covariance_every != 0) return Ok{};
-  auto sigmas = corner_sigmas_m(last, params, l.state);
-  if (!sigmas) return sigmas.error();
-  l.sigma_m = std::move(*sigmas);
   return Ok{};
 }
 
@@ -119,6 +119,8 @@ Result<MergedMap> AutoCompleteGraph::Impl::update(const PoseGraph& graph, const 
       if (const auto done = take_up(work, progress); !done) return done.error();
       if (const auto done = correct(work, warm, progress, input); !done) return done.error();
       if (const auto done = question(work, input, progress); !done) return done.error();
+      if (const auto done = rearrange(work, input, progress); !done) return done.error();
+      if (const auto done = work_out_sigmas(input, work); !done) return done.error();
       ++work.updates;
     } else {
       work.sigma_m.assign(plan->corners.size(), start ? 1.0 : 10.0);

@@ -8,6 +8,7 @@
 #include "acg/anchors.hpp"
 #include "acg/auto_complete_graph.hpp"
 #include "acg/first_alignment.hpp"
+#include "acg/line_search.hpp"
 #include "acg/node_store.hpp"
 #include "acg/read_out.hpp"
 #include "acg/solver.hpp"
@@ -21,7 +22,8 @@ struct GraphAnchor {
 };
 
 /// The works of the Auto-Complete Graph: how it begins (graph_start.cpp), a round of linking and solving
-/// (graph_rounds.cpp), what people say (graph_words.cpp), an update as a whole (auto_complete_graph.cpp).
+/// (graph_rounds.cpp), other places for its lines (graph_lines.cpp), what people say (graph_words.cpp), an update as a
+/// whole (auto_complete_graph.cpp).
 class AutoCompleteGraph::Impl {
  public:
   explicit Impl(const AcgParams& p) : params(p), nodes(p) {}
@@ -37,6 +39,8 @@ class AutoCompleteGraph::Impl {
     std::vector<double> sigma_m;
     BeamMemory beams;
     int updates = 0;
+    double searched_way_m = 0;  ///< way that was known when other places of its lines were last looked for
+    std::array<std::vector<LineBelief>, 2> beliefs;
     double gate_share = 1;  ///< of how far walls are looked for from where they are expected
     bool fits = false;      ///< what was said of the plan the last time
   };
@@ -49,6 +53,13 @@ class AutoCompleteGraph::Impl {
   double standing(const SolveInput& input, const std::vector<bool>& use, const Learnt& learnt) const;
   Result<Ok> question(Learnt& learnt, SolveInput& last, const Progress& progress) const;
   Result<Ok> look_again(double gate_share, Learnt& learnt, SolveInput& last, const Progress& progress) const;
+  Result<Ok> rearrange(Learnt& learnt, SolveInput& last, const Progress& progress) const;
+  Result<bool> rearrange_axis(std::size_t axis, const std::vector<LineBelief::Move>& moves, Learnt& learnt,
+                              SolveInput& last, const Progress& progress) const;
+  LineHolds line_holds(const Learnt& learnt) const;
+  AcgParams stretch_learnt(const Learnt& learnt) const;
+  double doubt_of(const Learnt& learnt, std::size_t wall) const;
+  Result<Ok> work_out_sigmas(const SolveInput& last, Learnt& learnt) const;
   void put_down(const PlanPlacement& placement, Learnt& learnt) const;
   Result<Ok> take_up(Learnt& learnt, const Progress& progress) const;
   Result<Ok> release_tense(Learnt& learnt, const SolveInput& input, const Progress& progress) const;

@@ -167,6 +167,8 @@ void AutoCompleteGraph::Impl::put_down(const PlanPlacement& s, Learnt& l) const 
   l.near_m.assign(plan->walls.size(), 0);
   l.sigma_m.clear();
   l.taken_way_m = 0;
+  l.searched_way_m = 0;
+  l.beliefs = {};
 }
 
 }  // namespace smokemap

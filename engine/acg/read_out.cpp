@@ -48,6 +48,7 @@ MergedWall read_wall(const SolvedPlan& solved, std::size_t w, const Similarity2&
   wall.state = solved.wall_states[w];
   if (wall.state == WallState::kConfirmed && wall.displacement_m > params.moved_m) wall.state = WallState::kMoved;
   wall.confidence = confidence_of(wall.state, solved.evidence[w]);
+  if (!solved.doubt.empty()) wall.confidence *= 1 - solved.doubt[w];
   wall.evidence_m = std::max(solved.evidence[w].hit_m(), solved.evidence[w].through_m());
   return wall;
 }

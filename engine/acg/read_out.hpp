@@ -19,6 +19,7 @@ struct SolvedPlan {
   std::vector<WallEvidence> evidence;  ///< per wall
   std::vector<double> linked_m;        ///< per wall
   std::vector<WallState> wall_states;  ///< per wall
+  std::vector<double> doubt;           ///< per wall: probability that it is really elsewhere; may be empty
   std::vector<double> corner_sigma_m;  ///< per corner
   std::vector<CornerLink> links;
 };

@@ -1,9 +1,12 @@
-// The Auto-Complete Graph, white box: ./run bench acg [--seeds N] [--rows TEXT] [--data DIR] [--no-published] [--json
-// FILE] Data: simulation (generated buildings, wrong plans of them, a robot's lidar and wheels through them),
-// seeds 1..N, the real front end (SLAM) and the real alignment in the loop, no true pose anywhere. Median over the
-// seeds, the worst in brackets. Rows with "online" update after every node and measure each update (CPU of one thread)
-// and the turn of walls; the others merge the whole run at once. With --data (the folder with acg and floor_plans) also
-// the Halmstad maps and the Oerebro pixel pairs. Two threads, one seed each; the same figures on one.
+// The Auto-Complete Graph, white box: ./run bench acg [--seeds N] [--first N] [--rows TEXT] [--data DIR] [--list]
+// [--no-published] [--json FILE]. --list names the rows; --rows takes those with TEXT in their name, so that the table
+// can be made in pieces (a seed of a row that merges at once takes some 5 s of CPU, online 1 to 3 minutes). What was
+// done is told on standard error. Data: simulation (generated buildings, wrong plans of them, a robot's lidar and
+// wheels through them), seeds 1..N, the real front end (SLAM) and the real alignment in the loop, no true pose
+// anywhere. Median over the seeds, the worst in brackets. Rows with "online" update after every node and measure each
+// update (CPU of one thread) and the turn of walls; the others merge the whole run at once. With --data (the folder
+// with acg and floor_plans) also the Halmstad maps and the Oerebro pixel pairs. Two threads, one seed each; the same
+// figures on one.
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -112,10 +115,12 @@ void run_seed(const std::vector<Row>& all, std::uint64_t seed, std::vector<std::
     auto problem = problems.find({s.stretch, s.missing_share});
     if (problem == problems.end())
       problem = problems.emplace(std::pair(s.stretch, s.missing_share), make_acg_problem(s, seed)).first;
-    if (!problem->second) continue;
-    const auto score = run_acg(s, *problem->second, seed, all[i].method);
+    const double begin = cpu_now_s();
+    const auto score =
+        problem->second ? run_acg(s, *problem->second, seed, all[i].method) : Result<AcgScore>(problem->second.error());
     const std::lock_guard lock(mutex);
     if (score) out[i].push_back(*score);
+    std::fprintf(stderr, "%s, seed %d: done in %.1f s\n", s.name.c_str(), static_cast<int>(seed), cpu_now_s() - begin);
     if (!score)
       std::fprintf(stderr, "%s, seed %d: %s\n", s.name.c_str(), static_cast<int>(seed), score.error().message.c_str());
     if (score && !score->success && all[i].method == AcgMethod::kOurs)
@@ -128,10 +133,11 @@ void run_seed(const std::vector<Row>& all, std::uint64_t seed, std::vector<std::
 
 int main(int argc, char** argv) {
   int seeds = 10, first = 1;
-  bool published = true;
+  bool published = true, list = false;
   std::string only, data, json_path;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--no-published") == 0) published = false;
+    if (std::strcmp(argv[i], "--list") == 0) list = true;
     if (std::strcmp(argv[i], "--seeds") == 0 && i + 1 < argc) seeds = std::atoi(argv[++i]);
     if (std::strcmp(argv[i], "--first") == 0 && i + 1 < argc) first = std::atoi(argv[++i]);
     if (std::strcmp(argv[i], "--rows") == 0 && i + 1 < argc) only = argv[++i];
@@ -143,6 +149,11 @@ int main(int argc, char** argv) {
   std::vector<Row> wanted;
   for (const Row& row : rows(published))
     if (row.scenario.name.find(only) != std::string::npos) wanted.push_back(row);
+  if (list) {
+    for (const Row& row : wanted) std::printf("%s\n", row.scenario.name.c_str());
+    for (const std::string& name : data_rows()) std::printf("%s (with --data)\n", name.c_str());
+    return 0;
+  }
   std::vector<std::vector<AcgScore>> scores(wanted.size());
   std::mutex mutex;
   std::atomic<int> next{first};
@@ -157,5 +168,5 @@ int main(int argc, char** argv) {
   for (const Column& c : kColumns) std::printf("  %14s", c.name);
   std::printf("\n");
   for (std::size_t i = 0; i < wanted.size(); ++i) print_row(wanted[i].scenario.name, scores[i], json);
-  if (!data.empty()) print_data_rows(data);
+  if (!data.empty()) print_data_rows(data, only);
 }

@@ -91,25 +91,23 @@ std::optional<HalmstadScore> run_halmstad(const PairedMaps& maps) {
   return out;
 }
 
-void print_halmstad(const std::string& data) {
+void print_halmstad(const std::string& data, const std::string& floor) {
   std::printf("\n%-10s %5s  %16s %16s  %8s %6s  %5s %6s\n", "Halmstad", "pairs", "two clicks, %", "merged, %",
               "links P", "links", "fit", "CPU s");
-  for (const std::string floor : {"E5", "F5"}) {
-    std::vector<double> before, after, links;
-    for (const PairedMaps& maps : read_paired_maps(data + "/floor_plans/halmstad", floor)) {
-      const auto score = run_halmstad(maps);
-      if (!score) {
-        std::printf("%-10s no answer\n", maps.name.c_str());
-        continue;
-      }
-      std::printf("%-10s %5zu  %16.2f %16.2f  %8.2f %6zu  %5.2f %6.1f\n", maps.name.c_str(), score->pairs,
-                  100 * score->before, 100 * score->after, score->links_right, score->links, score->fit, score->cpu_s);
-      std::fflush(stdout);
-      before.push_back(score->before), after.push_back(score->after), links.push_back(score->links_right);
+  std::vector<double> before, after, links;
+  for (const PairedMaps& maps : read_paired_maps(data + "/floor_plans/halmstad", floor)) {
+    const auto score = run_halmstad(maps);
+    if (!score) {
+      std::printf("%-10s no answer\n", maps.name.c_str());
+      continue;
     }
-    std::printf("%-10s %5zu  %16.2f %16.2f  %8.2f   median over maps of the median corner, per cent of the extent\n",
-                floor.c_str(), before.size(), 100 * median_of(before), 100 * median_of(after), median_of(links));
+    std::printf("%-10s %5zu  %16.2f %16.2f  %8.2f %6zu  %5.2f %6.1f\n", maps.name.c_str(), score->pairs,
+                100 * score->before, 100 * score->after, score->links_right, score->links, score->fit, score->cpu_s);
+    std::fflush(stdout);
+    before.push_back(score->before), after.push_back(score->after), links.push_back(score->links_right);
   }
+  std::printf("%-10s %5zu  %16.2f %16.2f  %8.2f   median over maps of the median corner, per cent of the extent\n",
+              floor.c_str(), before.size(), 100 * median_of(before), 100 * median_of(after), median_of(links));
 }
 
 /// Pixel of the drawing and metre of the robot's map (the data set's calibration/correspondences.json).
@@ -165,12 +163,18 @@ Result<DemoScenario> oerebro(const LayoutMap& layout, const BentDrawing& bent, s
 void print_oerebro(const std::string& data) {
   const RealPlan& plan = real_plans().back();
   const auto layout = read_drawing(data + "/" + plan.file, plan.metres_per_pixel);
-  if (!layout) return;
+  if (!layout) {
+    std::printf("Oerebro: %s\n", layout.error().message.c_str());
+    return;
+  }
   const BentDrawing bent(layout->frame());
   std::vector<double> three, four, three_before, four_before;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     auto demo = oerebro(*layout, bent, seed);
-    if (!demo) continue;
+    if (!demo) {
+      std::printf("Oerebro seed %d: %s\n", static_cast<int>(seed), demo.error().message.c_str());
+      continue;
+    }
     const auto& pairs = bent.pairs();
     // Along the corridor past all four places.
     const Point2 corridor = bent(layout->frame().to_metres({700, 345}));
@@ -193,12 +197,19 @@ void print_oerebro(const std::string& data) {
     }
     slam.polish();
     AutoCompleteGraph acg;
-    if (!acg.set_plan(demo->truth.layout)) continue;
+    if (const auto set = acg.set_plan(demo->truth.layout); !set) {
+      std::printf("Oerebro seed %d: %s\n", static_cast<int>(seed), set.error().message.c_str());
+      continue;
+    }
     for (const std::size_t i : {0u, 1u})
       acg.add_anchor(std::to_string(i), {kOerebro[i][0], kOerebro[i][1]}, demo->to_map(pairs[i].p_a));
     const auto merged = acg.update(slam.graph());
     const auto rigid = fit_similarity({pairs[0], pairs[1]});
-    if (!merged || !rigid) continue;
+    if (!merged || !rigid) {
+      std::printf("Oerebro seed %d: %s\n", static_cast<int>(seed),
+                  (merged ? rigid.error() : merged.error()).message.c_str());
+      continue;
+    }
     const auto error = [&](std::size_t i) {
       return (merged->layout_to_map(pairs[i].p_b) - demo->to_map(pairs[i].p_a)).norm();
     };
@@ -217,9 +228,19 @@ void print_oerebro(const std::string& data) {
 
 }  // namespace
 
-void print_data_rows(const std::string& data) {
-  print_halmstad(data);
-  print_oerebro(data);
+const std::vector<std::string>& data_rows() {
+  static const std::vector<std::string> names{"Halmstad E5", "Halmstad F5", "Oerebro pixel pairs"};
+  return names;
+}
+
+void print_data_rows(const std::string& data, const std::string& only) {
+  for (const std::string& name : data_rows()) {
+    if (name.find(only) == std::string::npos) continue;
+    if (name == "Oerebro pixel pairs")
+      print_oerebro(data);
+    else
+      print_halmstad(data, name.substr(name.size() - 2));
+  }
 }
 
 }  // namespace smokemap::bench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace smokemap::bench {
 
@@ -11,6 +12,9 @@ namespace smokemap::bench {
 /// are farthest apart and scored on all other pairs. Oerebro: nobody kept the robot's log, so the drawing is bent until
 /// its four pairs are where the published system measured them; a simulated robot drives there, the plan is given two
 /// pairs and scored on the other two.
-void print_data_rows(const std::string& data);
+///
+/// Only rows with `only` in their name.
+void print_data_rows(const std::string& data, const std::string& only);
+const std::vector<std::string>& data_rows();
 
 }  // namespace smokemap::bench

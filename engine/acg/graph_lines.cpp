@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cmath>
+
+#include "acg/graph_impl.hpp"
+#include "acg/plan_stretch.hpp"
+
+namespace smokemap {
+namespace {
+
+constexpr double kEnoughWay_m = 2.0;    ///< of way, before other places of drawn lines are looked for
+constexpr double kSearchAgain_m = 3.0;  ///< of new way, before that is done again
+constexpr double kOtherPlace_m = 0.4;   ///< a line that would move by less is in the same place
+constexpr int kRearrangements = 4;      ///< each may reach as far as LineChain does
+constexpr double kGain = 0.3;           ///< log odds, from which a line has a reason to move
+constexpr double kBetter = 0.005;       ///< of standing; the beliefs have weighed the arrangement itself
+constexpr double kDoubt = 0.05;         ///< a probability of another place that is as good as none
+
+}  // namespace
+
+LineHolds AutoCompleteGraph::Impl::line_holds(const Learnt& l) const {
+  LineHolds holds;
+  holds.gone.assign(plan->walls.size(), false);
+  for (const auto& [wall, word] : judgements) holds.gone[static_cast<std::size_t>(wall)] = word == WallJudgement::kGone;
+  for (const auto& [corner, p_map] : pins) holds.held_corners.push_back(corner);
+  for (const AnchorLink& a : anchor_links(l))
+    holds.held_corners.insert(holds.held_corners.end(), a.corners.begin(), a.corners.end());
+  if (start) {
+    holds.start_map = l.state.pose(0).translation();
+    holds.start_layout = start->T_layout_robot.translation();
+    holds.start_sigma_m = std::max(0.1, start->sigma_m);
+  }
+  return holds;
+}
+
+/// Links are made where the plan is expected, so a strip that was caught one wall too far stays there. Here all places
+/// of all lines are compared at once, and another arrangement is taken if the whole graph stands clearly better with
+/// it. What stays ambiguous is remembered in the beliefs.
+Result<Ok> AutoCompleteGraph::Impl::rearrange(Learnt& l, SolveInput& last, const Progress& progress) const {
+  const double way = nodes.way_m().back();
+  if (way < kEnoughWay_m || (way < l.searched_way_m + kSearchAgain_m && !words_changed)) return Ok{};
+  for (int attempt = 0; attempt <= kRearrangements; ++attempt) {
+    l.beliefs = search_lines(nodes.views(), nodes.spaced(), *plan, l.state, line_holds(l), params);
+    bool better = false;
+    for (const std::size_t axis : {0u, 1u})
+      for (const auto way_to_move : {&LineBelief::alone, &LineBelief::together}) {
+        if (better || attempt == kRearrangements) continue;
+        std::vector<LineBelief::Move> moves;
+        for (const LineBelief& belief : l.beliefs[axis]) moves.push_back(belief.*way_to_move);
+        const auto done = rearrange_axis(axis, moves, l, last, progress);
+        if (!done) return done.error();
+        better = *done;
+      }
+    if (!better) break;
+  }
+  l.searched_way_m = way;
+  return Ok{};
+}
+
+/// True if the lines of this axis were moved and the graph stands better.
+Result<bool> AutoCompleteGraph::Impl::rearrange_axis(std::size_t axis, const std::vector<LineBelief::Move>& moves,
+                                                     Learnt& l, SolveInput& last, const Progress& progress) const {
+  const auto elsewhere = [](const LineBelief::Move& move) { return std::abs(move.move_m) > kOtherPlace_m; };
+  if (std::none_of(moves.begin(), moves.end(), [&](const auto& m) { return elsewhere(m) && m.gain > kGain; }))
+    return false;
+  const auto line_moves = [&](int corner) {
+    return elsewhere(moves[static_cast<std::size_t>(plan->line_of_corner[axis][static_cast<std::size_t>(corner)])]);
+  };
+  Learnt other = l;
+  for (std::size_t w = 0; w < plan->walls.size(); ++w) {
+    if (!line_moves(plan->walls[w].corner_a) && !line_moves(plan->walls[w].corner_b)) continue;
+    other.walls[w] = WallState::kUnseen;
+    other.linked_m[w] = other.near_m[w] = 0;
+  }
+  std::vector<double> moves_m;
+  for (const LineBelief::Move& move : moves) moves_m.push_back(move.move_m);
+  move_lines(*plan, axis, moves_m, other.state);
+  SolveInput input;
+  if (const auto done = correct(other, false, progress, input); !done) return done.error();
+  if (standing(input, nodes.spaced(), other) < standing(last, nodes.spaced(), l) + kBetter) return false;
+  l = std::move(other);
+  last = std::move(input);
+  return true;
+}
+
+/// Probability that a wall is really elsewhere.
+double AutoCompleteGraph::Impl::doubt_of(const Learnt& l, std::size_t wall) const {
+  const int axis = plan->offset_axis(plan->walls[wall]);
+  if (axis < 0 || l.beliefs[static_cast<std::size_t>(axis)].empty()) return 0;
+  const auto& line_of = plan->line_of_corner[static_cast<std::size_t>(axis)];
+  const auto line = static_cast<std::size_t>(line_of[static_cast<std::size_t>(plan->walls[wall].corner_a)]);
+  return l.beliefs[static_cast<std::size_t>(axis)][line].elsewhere;
+}
+
+AcgParams AutoCompleteGraph::Impl::stretch_learnt(const Learnt& l) const {
+  AcgParams out = params;
+  out.sigma_wall_log_length = learnt_stretch(*plan, l.state, l.walls, l.linked_m, params);
+  return out;
+}
+
+/// From the normal equations, with the stretch that this plan turned out to have, and from what is ambiguous.
+Result<Ok> AutoCompleteGraph::Impl::work_out_sigmas(const SolveInput& last, Learnt& l) const {
+  if (l.sigma_m.size() == plan->corners.size() && l.updates % params.covariance_every != 0) return Ok{};
+  auto sigmas = corner_sigmas_m(last, stretch_learnt(l), l.state);
+  if (!sigmas) return sigmas.error();
+  l.sigma_m = std::move(*sigmas);
+  for (std::size_t c = 0; c < l.sigma_m.size(); ++c) {
+    double variance = 0;
+    for (const std::size_t axis : {0u, 1u}) {
+      if (l.beliefs[axis].empty()) continue;
+      const LineBelief& belief = l.beliefs[axis][static_cast<std::size_t>(plan->line_of_corner[axis][c])];
+      // What the normal equations expect to lie that far away is in their sigma already.
+      // Where that lies along one axis only, it is the root of two more than per coordinate.
+      const double expected = std::erfc(LineBelief::kNear_m / std::max(1e-3, 2 * l.sigma_m[c]));
+      const double elsewhere = std::max(0.0, belief.elsewhere - expected);
+      if (elsewhere > kDoubt) variance += 0.5 * elsewhere * belief.apart_m * belief.apart_m;
+    }
+    l.sigma_m[c] = std::hypot(l.sigma_m[c], std::sqrt(variance));
+  }
+  return Ok{};
+}
+
+}  // namespace smokemap
