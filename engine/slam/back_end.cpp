@@ -24,7 +24,7 @@ bool BackEnd::add(NewNode node, const Progress& progress) {
   }
   if (piece_begin_ >= 0 && relocate(id)) return solve(progress) || true;
   if (!search_due(id)) return false;
-  LoopCloser::Found found = closer_.close(graph_, scans_, id);
+  LoopCloser::Found found = closer_.close(graph_, scans_, id, std::max(0, piece_begin_));
   tried_ += found.tried;
   refused_ += found.rejected;
   if (found.edges.empty()) return false;

@@ -3,19 +3,25 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "slam/panorama.hpp"
 #include "slam/pose_search.hpp"
 
 namespace smokemap {
 namespace {
 
 constexpr double kTargetHalfSize_m = 25.0;
-constexpr int kTargetNodes = 12;  ///< each way along the old visit
-constexpr double kTargetReach_m = 5.0;
+constexpr double kTargetWay_m = 4.0;    ///< each way along the old visit ...
+constexpr double kTargetReach_m = 5.0;  ///< ... and as the crow flies; both and the radius of the search
 constexpr std::size_t kMostCandidates = 2;
 constexpr double kAgree_m = 0.20;
 constexpr double kAgree_rad = 0.035;
 constexpr double kSigmaLoop_m = 0.03, kSigmaLoop_rad = 0.006;
+constexpr int kVisitNodes = 12;  ///< of the newer visit whose rays are compared with the older one
+constexpr int kRayNodesEvery = 2;
+constexpr double kRayMargin_m = 0.3;
+constexpr int kLeastTelling = 20;
 constexpr std::size_t kSearchPoints = 200;
 constexpr int kSearchLevels = 6;
 constexpr double kRegion_m = 4.0;      ///< between the middles of regions that are searched as a whole
@@ -40,6 +46,13 @@ double largest_sigma_m(const Eigen::Matrix3d& covariance) {
   return std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)) + half_gap);
 }
 
+/// Along which positions are measured least: along a corridor.
+Point2 weakest_direction(const Eigen::Matrix3d& information) {
+  const double half_gap = 0.5 * (information(0, 0) - information(1, 1));
+  const double strong = 0.5 * std::atan2(information(0, 1), half_gap);
+  return {-std::sin(strong), std::cos(strong)};
+}
+
 /// How many standard deviations a correction of a node's pose is.
 double sigmas_of(const Pose2& T_map_before, const Pose2& T_map_after, const Eigen::Matrix3d& covariance) {
   Eigen::Vector3d moved = T_map_after.vector() - T_map_before.vector();
@@ -59,7 +72,8 @@ void LoopCloser::match_as(bool radar) {
   target_ = SurfaceMap(params_.front_end.cell_m);
 }
 
-LoopCloser::Found LoopCloser::close(const PoseGraph& graph, const NodeScans& scans, int node) {
+LoopCloser::Found LoopCloser::close(const PoseGraph& graph, const NodeScans& scans, int node, int piece_begin) {
+  piece_begin_ = piece_begin;
   Found found;
   for (const Candidate& candidate : candidates(graph, scans, node)) {
     ++found.tried;
@@ -113,13 +127,27 @@ bool LoopCloser::try_candidate(const PoseGraph& graph, const NodeScans& scans, i
   ++found.rejected;  // until it has passed everything
   if (coarse->runner_up_score > limits.unique_within * coarse->score) return false;
   const ScanAlignment fine = align(joint, target_, coarse->T_map_robot, params_.align);
-  if (sigmas_of(graph.nodes[index(node)].T_map_robot, fine.T_map_robot, candidate.covariance) > limits.within_sigmas)
-    return false;
+  const double sigmas = sigmas_of(graph.nodes[index(node)].T_map_robot, fine.T_map_robot, candidate.covariance);
+  if (sigmas > limits.within_sigmas || !holds_up(graph, scans, node, fine, sigmas)) return false;
   const auto edge = verified(graph, scans, node, candidate.node, fine);
   if (!edge) return false;
   --found.rejected;
   found.edges.push_back(*edge);
   return true;
+}
+
+/// The farther a loop would move the graph, the less there must be to say against it. Along a corridor nearly all rays
+/// agree wherever one stands: there only those count that end on door frames, pillars and far walls.
+bool LoopCloser::holds_up(const PoseGraph& graph, const NodeScans& scans, int node, const ScanAlignment& fine,
+                          double sigmas) const {
+  const LoopParams& limits = params_.loops;
+  const bool bold = sigmas > limits.bold_sigmas;
+  if (bold && fine.score < limits.least_align_score + limits.bold_score_more) return false;
+  if (as_radar_) return true;  // it sees through thin walls: rays prove nothing
+  const Rays rays = rays_between(graph, scans, node, fine);
+  if (bold)
+    return rays.telling >= kLeastTelling && rays.through <= limits.most_through_bold * (rays.telling + rays.through);
+  return rays.through <= limits.most_through * (rays.agree + rays.through);
 }
 
 /// The edge from an old node, if the group of nodes and each of its scans alone say the same.
@@ -136,7 +164,8 @@ std::optional<PoseEdge> LoopCloser::verified(const PoseGraph& graph, const NodeS
 
 std::optional<PoseEdge> LoopCloser::find_anywhere(const PoseGraph& graph, const NodeScans& scans, int node,
                                                   int piece_begin) {
-  const std::vector<SurfacePoint> joint = joint_scan(graph, scans, node, std::min(kWideJoint, node - piece_begin + 1));
+  piece_begin_ = piece_begin;
+  const std::vector<SurfacePoint> joint = joint_scan(graph, scans, node, kWideJoint);
   const std::vector<Point2> points = thinned(joint, kWideReach_m);
   if (points.size() < index(params_.points.least_points)) return std::nullopt;
   std::vector<Point2> centers;
@@ -169,16 +198,21 @@ std::optional<PoseEdge> LoopCloser::find_anywhere(const PoseGraph& graph, const 
   if (second > kAloneWithin * best->found.score) return std::nullopt;
   match_as(scans.either_by_radar(node, best->around));
   draw_region(graph, scans, best->around, piece_begin);
-  return verified(graph, scans, node, best->around, align(joint, target_, best->found.T_map_robot, params_.align));
+  const ScanAlignment fine = align(joint, target_, best->found.T_map_robot, params_.align);
+  if (!holds_up(graph, scans, node, fine, std::numeric_limits<double>::infinity())) return std::nullopt;
+  return verified(graph, scans, node, best->around, fine);
 }
 
 /// Everything seen around a node before the node `end`.
 void LoopCloser::draw_region(const PoseGraph& graph, const NodeScans& scans, int around, int end) {
   const Point2 middle = graph.nodes[index(around)].T_map_robot.translation();
   target_.reset(middle, kTargetHalfSize_m);
-  for (int j = 0; j < end; ++j)
-    if ((graph.nodes[index(j)].T_map_robot.translation() - middle).norm() < 1.5 * kRegion_m)
-      target_.add(scans.surface(j), graph.nodes[index(j)].T_map_robot);
+  target_nodes_.clear();
+  for (int j = 0; j < end; ++j) {
+    if ((graph.nodes[index(j)].T_map_robot.translation() - middle).norm() >= 1.5 * kRegion_m) continue;
+    target_.add(scans.surface(j), graph.nodes[index(j)].T_map_robot);
+    target_nodes_.push_back(j);
+  }
 }
 
 LikelihoodGrid LoopCloser::target_grid() const {
@@ -187,15 +221,19 @@ LikelihoodGrid LoopCloser::target_grid() const {
   return {known, params_.loops.cell_m, 1.2 * params_.loops.cell_m, kSearchLevels};
 }
 
-/// The old visit: nodes driven just before and after `around`, never near `node` itself.
+/// The old visit: nodes driven before and after `around`, never near `node` itself; as much of it as the window may
+/// lead to. A shorter piece would leave out the true place where the window is wide, and another that is like it would
+/// be alone.
 void LoopCloser::draw_target(const PoseGraph& graph, const NodeScans& scans, int node, int around, double radius_m) {
   const Point2 middle = graph.nodes[index(around)].T_map_robot.translation();
   target_.reset(middle, std::min(60.0, kTargetHalfSize_m + radius_m));
-  const int last = std::min(around + kTargetNodes, node - 1);
-  for (int j = std::max(0, around - kTargetNodes); j <= last; ++j) {
-    if ((graph.nodes[index(j)].T_map_robot.translation() - middle).norm() > kTargetReach_m) continue;
+  target_nodes_.clear();
+  for (int j = 0; j < node; ++j) {
+    if (std::abs(scans.way_m(j) - scans.way_m(around)) > kTargetWay_m + radius_m) continue;
+    if ((graph.nodes[index(j)].T_map_robot.translation() - middle).norm() > kTargetReach_m + radius_m) continue;
     if (scans.way_m(node) - scans.way_m(j) < 0.5 * params_.loops.least_way_m) continue;
     target_.add(scans.surface(j), graph.nodes[index(j)].T_map_robot);
+    target_nodes_.push_back(j);
   }
 }
 
@@ -203,7 +241,7 @@ std::vector<SurfacePoint> LoopCloser::joint_scan(const PoseGraph& graph, const N
                                                  int count) const {
   std::vector<SurfacePoint> joint;
   const Pose2 T_node_map = graph.nodes[index(node)].T_map_robot.inverse();
-  for (int i = node; i > std::max(-1, node - count); --i) {
+  for (int i = node; i >= std::max(piece_begin_, node - count + 1); --i) {
     const Pose2 T_node_i = T_node_map * graph.nodes[index(i)].T_map_robot;
     const Eigen::Matrix2d R = T_node_i.rotation();
     for (const SurfacePoint& s : scans.surface(i)) joint.push_back({T_node_i * s.p, R * s.normal, s.weight});
@@ -211,10 +249,39 @@ std::vector<SurfacePoint> LoopCloser::joint_scan(const PoseGraph& graph, const N
   return joint;
 }
 
+LoopCloser::Rays LoopCloser::rays_between(const PoseGraph& graph, const NodeScans& scans, int node,
+                                          const ScanAlignment& fine) const {
+  Rays rays;
+  const Pose2& T_map_node = fine.T_map_robot;
+  const Point2 weak = weakest_direction(fine.information);
+  const auto compare = [&](const SurfaceMap& surfaces, int from, const Pose2& T_map_from) {
+    Panorama panorama(T_map_from.translation(), kRayMargin_m);
+    surfaces.for_each([&](const SurfaceMap::Surface& s) { panorama.add(s.p, s.normal); });
+    for (const SurfacePoint& point : scans.surface(from)) {
+      Point2 normal = Point2::Zero();
+      const Panorama::Sight sight = panorama.look(T_map_from * point.p, normal);
+      rays.telling += std::abs(normal.dot(weak)) > 0.5;
+      rays.agree += sight == Panorama::Sight::kAgrees;
+      rays.through += sight == Panorama::Sight::kThrough;
+    }
+  };
+  const Pose2 T_new_old = T_map_node * graph.nodes[index(node)].T_map_robot.inverse();
+  SurfaceMap visit(params_.front_end.cell_m);
+  visit.reset(T_map_node.translation(), kTargetHalfSize_m);
+  for (int i = node; i >= std::max(piece_begin_, node - kVisitNodes + 1); --i) {
+    const Pose2 T_map_i = T_new_old * graph.nodes[index(i)].T_map_robot;
+    visit.add(scans.surface(i), T_map_i);
+    if ((node - i) % kRayNodesEvery == 0) compare(target_, i, T_map_i);
+  }
+  for (std::size_t k = 0; k < target_nodes_.size(); k += kRayNodesEvery)
+    compare(visit, target_nodes_[k], graph.nodes[index(target_nodes_[k])].T_map_robot);
+  return rays;
+}
+
 bool LoopCloser::singles_agree(const PoseGraph& graph, const NodeScans& scans, int node,
                                const Pose2& T_map_node) const {
   int agree = 0, asked = 0;
-  for (int i = node; i > std::max(-1, node - params_.loops.joint_nodes); i -= 2) {
+  for (int i = node; i >= std::max(piece_begin_, node - params_.loops.joint_nodes + 1); i -= 2) {
     const Pose2 expected =
         T_map_node * (graph.nodes[index(node)].T_map_robot.inverse() * graph.nodes[index(i)].T_map_robot);
     const ScanAlignment alone = align(scans.surface(i), target_, expected, params_.align);

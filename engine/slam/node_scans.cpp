@@ -1,6 +1,7 @@
 #include "slam/node_scans.hpp"
 
 #include <Eigen/LU>
+#include <cmath>
 #include <limits>
 #include <queue>
 
@@ -8,6 +9,12 @@
 
 namespace smokemap {
 namespace {
+
+constexpr double kNormalSteps = 32'000;
+
+std::int16_t packed(double part_of_normal) {
+  return static_cast<std::int16_t>(std::lround(part_of_normal * kNormalSteps));
+}
 
 /// Covariance of an edge as a displacement about the map's origin: its translation's error, and a turn about the node
 /// it leads to.
@@ -27,8 +34,8 @@ void NodeScans::add(const std::vector<SurfacePoint>& surface, double way_m, bool
   Scan scan{{}, way_m, by_radar};
   scan.points.reserve(surface.size());
   for (const SurfacePoint& s : surface)
-    scan.points.push_back({static_cast<float>(s.p.x()), static_cast<float>(s.p.y()), static_cast<float>(s.normal.x()),
-                           static_cast<float>(s.normal.y()), static_cast<float>(s.weight)});
+    scan.points.push_back({static_cast<float>(s.p.x()), static_cast<float>(s.p.y()), static_cast<float>(s.weight),
+                           packed(s.normal.x()), packed(s.normal.y())});
   scans_.push_back(std::move(scan));
 }
 
@@ -37,8 +44,7 @@ std::vector<SurfacePoint> NodeScans::surface(int node) const {
   points.reserve(scan(node).points.size());
   for (const Packed& p : scan(node).points)
     points.push_back({Point2(static_cast<double>(p.x), static_cast<double>(p.y)),
-                      Point2(static_cast<double>(p.normal_x), static_cast<double>(p.normal_y)),
-                      static_cast<double>(p.weight)});
+                      Point2(p.normal_x / kNormalSteps, p.normal_y / kNormalSteps), static_cast<double>(p.weight)});
   return points;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "maps/pose_graph.hpp"
@@ -8,7 +9,8 @@
 namespace smokemap {
 
 /// What the back end knows of each node beyond the graph, by node id. Points are kept in single precision (a
-/// micrometre at 10 m): with everything else of the graph they are most of what a long run needs.
+/// micrometre at 10 m), directions to a twentieth of a milliradian: with everything else of the graph they are most of
+/// what a long run needs.
 class NodeScans {
  public:
   /// @param surface  robot frame
@@ -24,7 +26,8 @@ class NodeScans {
 
  private:
   struct Packed {
-    float x, y, normal_x, normal_y, weight;
+    float x, y, weight;
+    std::int16_t normal_x, normal_y;  ///< in steps of 1 / kNormalSteps
   };
   struct Scan {
     std::vector<Packed> points;

@@ -19,13 +19,14 @@ class EchoGrid {
       cells_[key(column(echoes[i].p.x()), column(echoes[i].p.y()))].push_back(i);
   }
   template <typename Visit>
-  void around(const Point2& p, Visit&& visit) const {
-    for (int y = column(p.y()) - 1; y <= column(p.y()) + 1; ++y)
-      for (int x = column(p.x()) - 1; x <= column(p.x()) + 1; ++x) {
+  void around(const Point2& p, double radius_m, Visit&& visit) const {
+    const int reach = static_cast<int>(std::ceil(radius_m / cell_m_));
+    for (int y = column(p.y()) - reach; y <= column(p.y()) + reach; ++y)
+      for (int x = column(p.x()) - reach; x <= column(p.x()) + reach; ++x) {
         const auto cell = cells_.find(key(x, y));
         if (cell == cells_.end()) continue;
         for (const std::size_t i : cell->second)
-          if ((echoes_[i].p - p).norm() <= cell_m_) visit(echoes_[i]);
+          if ((echoes_[i].p - p).norm() <= radius_m) visit(echoes_[i]);
       }
   }
 
@@ -37,10 +38,10 @@ class EchoGrid {
   std::unordered_map<std::int64_t, std::vector<std::size_t>> cells_;
 };
 
-SurfacePoint surface_around(const EchoGrid& grid, const RadarEcho& echo, const Point2& p_sensor) {
+SurfacePoint surface_around(const EchoGrid& grid, const RadarEcho& echo, double radius_m, const Point2& p_sensor) {
   PrincipalLine line;
   double weight = 0;
-  grid.around(echo.p, [&](const RadarEcho& other) {
+  grid.around(echo.p, radius_m, [&](const RadarEcho& other) {
     line.add(other.p, other.weight);
     weight += other.weight;
   });
@@ -105,12 +106,13 @@ ScanPoints surface_points(const RadarSweep& sweep, const Twist2& twist, const Ra
   }
   for (const RadarEcho* echo : kept) {
     if (out.surface.size() == static_cast<std::size_t>(points.most_points)) break;
-    const SurfacePoint point = surface_around(near, *echo, p_sensor);
-    out.surface.push_back(point);
+    const double radius_m = std::max(radar.surface_radius_m,
+                                     radar.surface_azimuths * echo->range_m * std::abs(sweep.azimuth_increment_rad));
+    out.surface.push_back(surface_around(near, *echo, radius_m, p_sensor));
   }
   for (const RadarEcho& echo : echoes) {
     int support = 0;
-    crowded.around(echo.p, [&](const RadarEcho&) { ++support; });
+    crowded.around(echo.p, radar.spacing_m, [&](const RadarEcho&) { ++support; });
     if (support < 3 || drawn[static_cast<std::size_t>(echo.azimuth)]) continue;
     drawn[static_cast<std::size_t>(echo.azimuth)] = true;
     hits.push_back(echo.p);

@@ -68,6 +68,10 @@ Result<Ok> LoopParams::validate() const {
       .in_range("least_align_score", least_align_score, 0, 1)
       .in_range("unique_within", unique_within, 0.8, 1)
       .in_range("joint_nodes", joint_nodes, 1, 50)
+      .in_range("most_through", most_through, 0, 1)
+      .in_range("bold_sigmas", bold_sigmas, 0, within_sigmas)
+      .in_range("most_through_bold", most_through_bold, 0, most_through)
+      .in_range("bold_score_more", bold_score_more, 0, 1 - least_align_score)
       .result();
 }
 
@@ -91,6 +95,7 @@ Result<Ok> RadarParams::validate() const {
       .in_range("nearest_m", nearest_m, 0, 50)
       .in_range("farthest_m", farthest_m, nearest_m, 500)
       .positive("surface_radius_m", surface_radius_m)
+      .in_range("surface_azimuths", surface_azimuths, 0, 50)
       .positive("spacing_m", spacing_m)
       .in_range("behind_share", behind_share, 0, 1)
       .positive("lasting_within_m", lasting_within_m)

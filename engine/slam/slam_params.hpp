@@ -68,8 +68,12 @@ struct LoopParams {
   double cell_m = 0.10;              ///< of the search grid
   double least_search_score = 0.55;  ///< mean likelihood of the points
   double least_align_score = 0.60;
-  double unique_within = 0.92;  ///< a second place this good makes the loop doubtful
-  int joint_nodes = 4;          ///< nodes searched together as one scan
+  double unique_within = 0.92;      ///< a second place this good makes the loop doubtful
+  int joint_nodes = 4;              ///< nodes searched together as one scan
+  double most_through = 0.12;       ///< share of the rays of one visit that may pass through what the other saw ...
+  double bold_sigmas = 1.0;         ///< ... but of a loop that corrects the graph by more than this
+  double most_through_bold = 0.05;  ///< fewer may, of those that tell places along a corridor apart,
+  double bold_score_more = 0.10;    ///< and it must fit better by this
   Result<Ok> validate() const;
 };
 
@@ -92,7 +96,8 @@ struct RadarParams {
   double least_power = 12.0;  ///< times the receiver noise
   double nearest_m = 0.5;
   double farthest_m = 15.0;
-  double surface_radius_m = 0.50;  ///< neighbours that make an oriented surface point
+  double surface_radius_m = 0.50;  ///< neighbours that make an oriented surface point ...
+  double surface_azimuths = 2.5;   ///< ... and at least so many azimuths to each side: far walls are sparse
   double spacing_m = 0.25;
   double behind_share =
       0.5;  ///< an echo behind n others of its azimuth has the weight this^n: mirror images are behind

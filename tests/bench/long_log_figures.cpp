@@ -27,7 +27,7 @@ struct Site {
 
 class SiteBuilder {
  public:
-  explicit SiteBuilder(std::mt19937_64& random) : random_(random) {
+  SiteBuilder(std::mt19937_64& random, bool alike) : random_(random), alike_(alike) {
     for (int i = 0; i < kLines; ++i) {
       site_.xs.push_back(i == 0 ? 0 : site_.xs.back() + uniform(random, 16, 26));
       site_.ys.push_back(i == 0 ? 0 : site_.ys.back() + uniform(random, 12, 19));
@@ -51,14 +51,14 @@ class SiteBuilder {
   void add_block(std::size_t i, std::size_t j) {
     const Point2 low(site_.xs[i] + kHalfCorridor_m, site_.ys[j] + kHalfCorridor_m),
         high(site_.xs[i + 1] - kHalfCorridor_m, site_.ys[j + 1] - kHalfCorridor_m);
-    const double middle = uniform(random_, 0.4, 0.6) * (high.y() - low.y()) + low.y();
+    const double middle = drawn(0.4, 0.6) * (high.y() - low.y()) + low.y();
     wall({low.x(), low.y()}, {low.x(), high.y()});
     wall({high.x(), low.y()}, {high.x(), high.y()});
     wall({low.x(), middle}, {high.x(), middle});
     for (const double x : {low.x(), high.x()})
-      for (double y = low.y() + uniform(random_, 1, 5); y < high.y() - 1; y += uniform(random_, 2, 6)) {
-        const double side = x == low.x() ? -1 : 1, deep = uniform(random_, 0.15, 0.35);
-        box({std::min(x, x + side * deep), y}, {std::max(x, x + side * deep), y + uniform(random_, 0.2, 0.5)});
+      for (double y = low.y() + drawn(1, 5); y < high.y() - 1; y += drawn(2, 6)) {
+        const double side = x == low.x() ? -1 : 1, deep = drawn(0.15, 0.35);
+        box({std::min(x, x + side * deep), y}, {std::max(x, x + side * deep), y + drawn(0.2, 0.5)});
       }
     row_of_rooms(low.x(), high.x(), low.y(), middle, site_.doors_of_row[j]);
     row_of_rooms(low.x(), high.x(), high.y(), middle, site_.doors_of_row[j + 1]);
@@ -67,14 +67,14 @@ class SiteBuilder {
   void row_of_rooms(double from_x, double to_x, double front_y, double back_y, std::vector<Door>& doors) {
     const double out = front_y < back_y ? -1 : 1;
     for (double x = from_x; x < to_x - 0.1;) {
-      double end = std::min(to_x, x + uniform(random_, 3, 7));
+      double end = std::min(to_x, x + drawn(3, 7));
       if (to_x - end < 3) end = to_x;
       if (end < to_x) wall({end, front_y}, {end, back_y});
-      const double door = uniform(random_, x + 0.9, end - 0.9);
+      const double door = drawn(x + 0.9, end - 0.9);
       wall({x, front_y}, {door - 0.5, front_y});
       wall({door + 0.5, front_y}, {end, front_y});
       const double depth = std::abs(back_y - front_y);
-      const double cupboard = uniform(random_, 0.5, 1.2), at = uniform(random_, x + 0.1, end - cupboard - 0.1);
+      const double cupboard = drawn(0.5, 1.2), at = drawn(x + 0.1, end - cupboard - 0.1);
       const double y = back_y + out * 0.5;
       box({at, std::min(y, back_y)}, {at + cupboard, std::max(y, back_y)});
       doors.push_back({{door, front_y + out * kHalfCorridor_m}, {door, front_y - out * 0.5 * depth}});
@@ -82,7 +82,11 @@ class SiteBuilder {
     }
   }
 
+  /// Of rooms that are alike, the middle of what they might be.
+  double drawn(double low, double high) { return alike_ ? 0.5 * (low + high) : uniform(random_, low, high); }
+
   std::mt19937_64& random_;
+  bool alike_;
   Site site_;
 };
 
@@ -178,9 +182,9 @@ void add_relations(LongLog& log) {
 
 }  // namespace
 
-LongLog long_log(std::uint64_t seed, double way_m) {
+LongLog long_log(std::uint64_t seed, double way_m, bool alike) {
   std::mt19937_64 random(seed);
-  const Site site = SiteBuilder(random).take();
+  const Site site = SiteBuilder(random, alike).take();
   const SegmentWorld world(site.walls);
   LidarParams lidar;
   lidar.beams = 180;

@@ -22,6 +22,8 @@ struct LongLog {
 
 /// Walks at random through the corridors, into a room now and then, until `way_m` are driven. The same seed gives the
 /// same log.
-LongLog long_log(std::uint64_t seed, double way_m);
+/// @param alike  all rooms, doors and pillars are the same, every few metres: one step along a corridor looks like the
+///               next, and only its ends and the lengths of the blocks tell where the robot is
+LongLog long_log(std::uint64_t seed, double way_m, bool alike = false);
 
 }  // namespace smokemap::bench

@@ -1,11 +1,12 @@
-// slam_bench [--data DIR] [--seeds N]: what SLAM reaches, beside what it should.
+// slam_bench [--data DIR] [--seeds N] [--km FIRST,LAST]: what SLAM reaches, beside what it should.
 //
 // For every log in DIR (CARMEN .log, .log.gz, .clf, rosbag2 .db3, .mcap): relation error where NAME.relations lies
 // beside it, over all relations and over those whose stamps mean one place only (trajectory_error.hpp says why); error
 // against NAME.ref.txt (a trajectory "t x y heading") where that lies there; CPU seconds and how many times faster than
 // the robot that is, reading included; peak memory; time of the front end per scan.
-// Always: generated logs of a kilometre, the simulated twin of Paper VI, and N random buildings full of smoke with the
-// radar alone. Every log runs in a process of its own, so that its memory is its own.
+// Always: generated logs of a kilometre (with how many of the loops that were kept are wrong), the simulated twin of
+// Paper VI, and N random buildings full of smoke with the radar alone. With --km only the generated logs of those
+// seeds. Every log runs in a process of its own, so that its memory is its own.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -30,6 +31,7 @@ namespace {
 constexpr std::size_t kOptimizeEveryScans = 20;
 constexpr double kLongWay_m = 1200;
 constexpr int kLongLogs = 3;
+constexpr double kWrong_m = 0.5;   ///< a loop this far from the truth is a wrong one
 constexpr double kMissed_m = 1.0;  ///< a place seen again that is this far from itself: the loop was missed
 
 const std::map<std::string, std::string> kGoals{
@@ -137,19 +139,37 @@ void recorded_log(const std::filesystem::path& path, const std::string& name) {
     std::printf("%12s   to reach: %s\n", "", goal->second.c_str());
 }
 
-void generated_log(int seed) {
-  const LongLog log = long_log(static_cast<std::uint64_t>(seed), kLongWay_m);
+/// Kept loops that tie together what does not belong together, and the worst of them.
+std::pair<std::size_t, double> wrong_loops(const PoseGraph& graph, const Trajectory& truth) {
+  std::map<Stamp, Pose2> T_world_robot;
+  for (const StampedPose& pose : truth) T_world_robot.emplace(pose.stamp, pose.T_map_robot);
+  const auto node_truth = [&](int node) { return T_world_robot.at(graph.nodes[static_cast<std::size_t>(node)].stamp); };
+  std::pair<std::size_t, double> wrong{0, 0};
+  for (const PoseEdge& edge : graph.edges) {
+    if (edge.kind != EdgeKind::kLoop || edge.state == LinkState::kRejected) continue;
+    const Pose2 T_from_to = node_truth(edge.from).inverse() * node_truth(edge.to);
+    const double off_m = (T_from_to.translation() - edge.T_from_to.translation()).norm();
+    wrong.first += off_m > kWrong_m;
+    wrong.second = std::max(wrong.second, off_m);
+  }
+  return wrong;
+}
+
+void generated_log(int seed, bool alike) {
+  const LongLog log = long_log(static_cast<std::uint64_t>(seed), kLongWay_m, alike);
   const double begin = cpu_s();
   const Played played = play(log.items);
-  print_row("km " + std::to_string(seed), played, log.relations, log.truth, cpu_s() - begin);
+  print_row((alike ? "alike " : "km ") + std::to_string(seed), played, log.relations, log.truth, cpu_s() - begin);
   std::size_t missed = 0;
   for (const PoseRelation& revisit : log.revisits) {
     const auto error = relation_error(played.slam.trajectory(), {revisit});
     missed += !error || error->translation_m.most > kMissed_m;
   }
+  const auto [wrong, worst_m] = wrong_loops(played.slam.graph(), log.truth);
   std::printf(
-      "%12s   to reach: 0.050 m, largest 1 m, no missed loop; %zu of %zu places seen again missed, %.0f m driven\n", "",
-      missed, log.revisits.size(), log.way_m);
+      "%12s   to reach: 0.050 m, largest 1 m, no missed loop; %zu of %zu places seen again missed, %zu loops wrong "
+      "(the worst by %.2f m), %.0f m driven\n",
+      "", missed, log.revisits.size(), wrong, worst_m, log.way_m);
 }
 
 template <typename Work>
@@ -213,16 +233,24 @@ void smoke(int seeds) {
 
 int main(int argc, char** argv) {
   std::string data;
-  int seeds = 20;
+  int seeds = 20, first_km = 1, last_km = 0;
   for (int i = 1; i + 1 < argc; ++i) {
     if (std::strcmp(argv[i], "--data") == 0) data = argv[i + 1];
     if (std::strcmp(argv[i], "--seeds") == 0) seeds = std::atoi(argv[i + 1]);
+    if (std::strcmp(argv[i], "--km") == 0) (void)std::sscanf(argv[i + 1], "%d,%d", &first_km, &last_km);
   }
   using namespace smokemap::bench;
   print_head();
+  const auto generated = [](int first, int last) {
+    for (const bool alike : {false, true})
+      for (int seed = first; seed <= last; ++seed) in_own_process([=] { generated_log(seed, alike); });
+  };
+  generated(first_km, last_km);
+  if (last_km > 0) return 0;
   for (const auto& [name, path] : data.empty() ? decltype(logs_in(data)){} : logs_in(data))
     in_own_process([&name = name, &path = path] { recorded_log(path, name); });
-  for (int seed = 1; seed <= kLongLogs; ++seed) in_own_process([seed] { generated_log(seed); });
+  if (seeds < 0) return 0;
+  generated(1, kLongLogs);
   in_own_process(twin);
   in_own_process([seeds] { smoke(seeds); });
 }

@@ -148,5 +148,105 @@ TEST(LoopCloser, IsNotFooledByRoomsThatAreAlike) {
   }
 }
 
+/// A straight corridor 65 m long, 2.2 m wide; pillars along both walls every few metres.
+std::vector<Segment2> corridor_with_pillars(std::mt19937_64& random) {
+  std::vector<Segment2> walls{
+      {{-10, -1.1}, {55, -1.1}}, {{55, -1.1}, {55, 1.1}}, {{55, 1.1}, {-10, 1.1}}, {{-10, 1.1}, {-10, -1.1}}};
+  for (const double side : {-1.0, 1.0})
+    for (double x = -9; x < 54; x += uniform(random, 2, 6)) {
+      const double inner = side * (1.1 - uniform(random, 0.15, 0.35)), end = x + uniform(random, 0.2, 0.5);
+      walls.push_back({{x, side * 1.1}, {x, inner}});
+      walls.push_back({{x, inner}, {end, inner}});
+      walls.push_back({{end, inner}, {end, side * 1.1}});
+    }
+  return walls;
+}
+
+/// Two visits to a corridor; how far the second is from the first is known to a few metres only.
+struct TwoVisits {
+  PoseGraph graph;
+  NodeScans scans;
+  std::vector<Pose2> truth;
+
+  /// @param begin_m  where the second visit begins; the first goes from 0 to 8 m
+  /// @param off_m    how far off along the corridor the graph has the second visit
+  TwoVisits(double begin_m, double off_m, std::mt19937_64& random) {
+    const std::vector<Segment2> walls = corridor_with_pillars(random);
+    for (double x = 0; x <= 8; x += 0.4) add(walls, {x, uniform(random, -0.2, 0.2), 0}, 0, 0.4, random);
+    for (double x = begin_m; x <= begin_m + 5; x += 0.4)
+      add(walls, {x, uniform(random, -0.2, 0.2), uniform(random, -0.1, 0.1)}, off_m, x == begin_m ? 60 : 0.4, random);
+  }
+
+ private:
+  void add(const std::vector<Segment2>& walls, const Pose2& at, double off_m, double way_m, std::mt19937_64& random) {
+    PoseNode node;
+    node.id = static_cast<int>(truth.size());
+    node.T_map_robot = Pose2(at.x() + off_m, at.y(), at.heading());
+    if (node.id > 0) {
+      const Pose2 z = graph.nodes.back().T_map_robot.inverse() * node.T_map_robot;
+      graph.edges.push_back(step_between(node.id - 1, node.id, z, way_m > 10 ? 2.5 : 0.01, way_m > 10 ? 0.05 : 0.003));
+    }
+    truth.push_back(at);
+    graph.nodes.push_back(node);
+    way_m_ += way_m;
+    scans.add(surface_points(test::scan_at(walls, at, 0, random), {}, {}, {}).surface, way_m_, false);
+  }
+  double way_m_ = 0;
+};
+
+/// The search knew a few metres of the old visit only: where the true place was not among them, another that looked
+/// alike was alone, and a corridor was folded by 8 m. All the same it must find what there is.
+TEST(LoopCloser, SlidesAlongNoCorridor) {
+  int found = 0, wrong = 0, inside = 0;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    std::mt19937_64 random(seed);
+    const double begin_m = uniform(random, -6, 14), off_m = uniform(random, -4, 4);
+    const TwoVisits visits(begin_m, off_m, random);
+    LoopCloser closer{SlamParams{}};
+    const int last = static_cast<int>(visits.truth.size()) - 1;
+    bool seen_again = false;
+    for (int node = last - 4; node <= last; node += 2)
+      for (const PoseEdge& edge : closer.close(visits.graph, visits.scans, node).edges) {
+        const Pose2 truth = visits.truth[static_cast<std::size_t>(edge.from)].inverse() *
+                            visits.truth[static_cast<std::size_t>(edge.to)];
+        const double off = (edge.T_from_to.translation() - truth.translation()).norm();
+        wrong += off > 0.3;
+        seen_again = true;
+        EXPECT_LT(off, 0.3) << "seed " << seed << ", second visit from " << begin_m << " m, graph off by " << off_m;
+      }
+    inside += begin_m > 0 && begin_m < 3;
+    found += seen_again && begin_m > 0 && begin_m < 3;
+  }
+  EXPECT_EQ(wrong, 0);
+  ASSERT_GT(inside, 1);
+  EXPECT_EQ(found, inside);
+}
+
+TEST(LoopCloser, GivesNothingForACorridorWithoutAnyMark) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    std::mt19937_64 random(seed);
+    const std::vector<Segment2> bare{{{-30, -1.1}, {60, -1.1}}, {{60, 1.1}, {-30, 1.1}}};
+    PoseGraph graph;
+    NodeScans scans;
+    for (int i = 0; i < 30; ++i) {
+      const bool second = i >= 15;
+      PoseNode node;
+      node.id = i;
+      node.T_map_robot = Pose2(0.4 * (second ? i - 13 : i) + (second ? 2.0 : 0), 0, 0);
+      if (i > 0)
+        graph.edges.push_back(step_between(i - 1, i, graph.nodes.back().T_map_robot.inverse() * node.T_map_robot,
+                                           i == 15 ? 2.5 : 0.01, i == 15 ? 0.05 : 0.003));
+      graph.nodes.push_back(node);
+      scans.add(
+          surface_points(test::scan_at(bare, Pose2(0.4 * (second ? i - 15 : i), 0, 0), 0, random), {}, {}, {}).surface,
+          0.4 * i + (second ? 60 : 0), false);
+    }
+    LoopCloser closer{SlamParams{}};
+    for (const int node : {20, 24, 29})
+      for (const PoseEdge& edge : closer.close(graph, scans, node).edges)  // across it may tie, along it must not claim
+        EXPECT_LT(edge.sqrt_information.row(0).norm(), 3) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace smokemap

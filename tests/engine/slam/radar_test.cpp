@@ -62,7 +62,7 @@ TEST(RadarPoints, LieOnWallsAndClearNothing) {
     const Point2 n = at.rotation() * point.normal;
     along_wall += std::max(std::abs(n.x()), std::abs(n.y())) > 0.9;
   }
-  EXPECT_GT(oriented, 30);
+  EXPECT_GT(oriented, 40);
   EXPECT_GT(along_wall, 0.8 * oriented);
   EXPECT_TRUE(points.free_ends_robot->empty());
 }
