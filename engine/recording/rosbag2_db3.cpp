@@ -2,7 +2,7 @@
 
 #include <sqlite3.h>
 
-#include <cstring>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -89,7 +89,7 @@ Result<Ok> read_db3(std::span<const std::uint8_t> bytes, RosLogBuilder& builder)
   const Database database(opened);
   auto* copy = static_cast<unsigned char*>(sqlite3_malloc64(bytes.size() + 1));
   if (!copy) return fail(Errc::kTooLarge, "no memory to unpack the bag");
-  std::memcpy(copy, bytes.data(), bytes.size());
+  std::copy(bytes.begin(), bytes.end(), copy);
   const auto size = static_cast<sqlite3_int64>(bytes.size());
   if (sqlite3_deserialize(opened, "main", copy, size, size,
                           SQLITE_DESERIALIZE_FREEONCLOSE | SQLITE_DESERIALIZE_READONLY) != SQLITE_OK)
