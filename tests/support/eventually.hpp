@@ -17,10 +17,8 @@ template <typename T>
 class Mailbox {
  public:
   void put(T item) {
-    {
-      const std::lock_guard lock(mutex_);
-      items_.push_back(std::move(item));
-    }
+    const std::lock_guard lock(mutex_);  // also while it notifies: who waits may destroy the mailbox right after
+    items_.push_back(std::move(item));
     arrived_.notify_all();
   }
   std::vector<T> all() const {

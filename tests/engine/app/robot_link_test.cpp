@@ -62,12 +62,14 @@ struct Site {
     ASSERT_THAT(engine.apply(set), test::IsOk());
   }
   std::optional<RobotStatus> fox() const {
-    for (const RobotStatus& robot : engine.snapshot()->robots)
+    const auto snapshot = engine.snapshot();
+    for (const RobotStatus& robot : snapshot->robots)
       if (robot.id == "fox") return robot;
     return std::nullopt;
   }
   GoalState goal_state() const {
-    for (const GoalView& view : engine.snapshot()->goals)
+    const auto snapshot = engine.snapshot();
+    for (const GoalView& view : snapshot->goals)
       if (view.goal.id == "g") return view.goal.state;
     return GoalState::kQueued;
   }
