@@ -9,6 +9,7 @@
 
 #include "sketch/doors.hpp"
 #include "sketch/gaps.hpp"
+#include "sketch/hatching.hpp"
 #include "sketch/outside.hpp"
 
 namespace smokemap {
@@ -45,6 +46,11 @@ double extent_of(const std::vector<Stroke>& strokes) {
   return (high - low).maxCoeff();
 }
 
+double extent_of_sheet(const SketchMap& sketch) {
+  const auto walls = strokes_of(sketch, StrokeKind::kWall);
+  return walls.empty() ? 0 : extent_of(walls);
+}
+
 /// Opens the walls at a door stroke: along it where it lies on a wall, for its own length where it crosses one.
 SketchGap open_door(cv::Mat& walls, const Stroke& door, const std::vector<Stroke>& wall_strokes, int pen_px) {
   const Segment2 drawn{door.points_px.front(), door.points_px.back()};
@@ -72,6 +78,30 @@ void fill_slivers(cv::Mat& free, double least_area) {
       if (const int label = labels.at<int>(y, x);
           label > 0 && label < count && stats.at<int>(label, cv::CC_STAT_AREA) < least_area)
         free.at<uchar>(y, x) = 0;
+}
+
+/// Hatched areas are filled, and so is what hatching covers mostly: nobody draws up to the very edge.
+void fill_hatched(const std::vector<Hatching>& areas, cv::Mat& free) {
+  if (areas.empty()) return;
+  cv::Mat hatched = cv::Mat::zeros(free.size(), CV_8UC1), labels;
+  for (const Hatching& area : areas) {
+    std::vector<cv::Point> ring;
+    for (const Point2& p : area.outline_px) ring.push_back(pixel(p));
+    cv::fillConvexPoly(hatched, ring, cv::Scalar(255));
+  }
+  const int count = cv::connectedComponents(free, labels, 4);
+  std::vector<int> all(static_cast<std::size_t>(count), 0), covered = all;
+  for (int y = 0; y < free.rows; ++y)
+    for (int x = 0; x < free.cols; ++x) {
+      const auto label = static_cast<std::size_t>(labels.at<int>(y, x));
+      ++all[label];
+      covered[label] += hatched.at<uchar>(y, x) != 0;
+    }
+  for (int y = 0; y < free.rows; ++y)
+    for (int x = 0; x < free.cols; ++x) {
+      const auto label = static_cast<std::size_t>(labels.at<int>(y, x));
+      if (hatched.at<uchar>(y, x) || 2 * covered[label] > all[label]) free.at<uchar>(y, x) = 0;
+    }
 }
 
 Result<Ok> check_sheet(const SketchMap& sketch, const SketchParams& params) {
@@ -133,7 +163,11 @@ void open_and_close(const SketchMap& sketch, const std::vector<Stroke>& walls, c
 Result<CleanSketch> clean_sketch(const SketchMap& sketch, const SketchParams& params) {
   if (const auto valid = params.validate(); !valid) return valid.error();
   if (const auto sheet = check_sheet(sketch, params); !sheet) return sheet.error();
-  const auto strokes = strokes_of(sketch, StrokeKind::kWall);
+  const HatchedStrokes hatching = find_hatched_strokes(sketch.strokes, extent_of_sheet(sketch));
+  SketchMap drawn = sketch;
+  for (std::size_t i = 0; i < drawn.strokes.size(); ++i)
+    if (hatching.is_hatching[i]) drawn.strokes[i].kind = StrokeKind::kNote;
+  const auto strokes = strokes_of(drawn, StrokeKind::kWall);
   if (strokes.empty()) return fail(Errc::kDegenerate, "no wall is drawn yet");
   const double extent = extent_of(strokes);
 
@@ -152,6 +186,7 @@ Result<CleanSketch> clean_sketch(const SketchMap& sketch, const SketchParams& pa
     return fail(Errc::kDegenerate, "no closed room: walls do not meet anywhere");
   // Openings are free on the inside, and where they lie between two rooms.
   clean.free_space = (drawing.open == 0) & (outline.outside == 0);
+  fill_hatched(hatching.areas, clean.free_space);
   fill_slivers(clean.free_space, 0.5 * least);
   const auto open =
       std::count_if(clean.gaps.begin(), clean.gaps.end(), [](const SketchGap& g) { return !g.closed_by_us; });

@@ -141,7 +141,7 @@ std::vector<Polyline> straightened(const std::vector<SkeletonBranch>& branches, 
 }
 
 std::vector<Polyline> without_hatching(std::vector<Polyline> lines, const std::vector<double>& widths,
-                                       double spacing_px) {
+                                       double spacing_px, std::vector<Polyline>* left_out) {
   ENGINE_EXPECT(widths.size() == lines.size());
   std::vector<std::size_t> family(lines.size());
   std::iota(family.begin(), family.end(), std::size_t{0});
@@ -175,7 +175,10 @@ std::vector<Polyline> without_hatching(std::vector<Polyline> lines, const std::v
     const std::vector<double>& others = widths_of[root(i)];
     // A wall beside steps runs like them, but people draw it stronger.
     const bool is_wall = widths[i] > kWallPen * others[others.size() / 2];
-    if (others.size() < 4 || is_wall) kept.push_back(std::move(lines[i]));
+    if (others.size() < 4 || is_wall)
+      kept.push_back(std::move(lines[i]));
+    else if (left_out != nullptr)
+      left_out->push_back(std::move(lines[i]));
   }
   return kept;
 }

@@ -23,8 +23,9 @@ std::vector<Polyline> straightened(const std::vector<SkeletonBranch>& branches, 
 
 /// Drops families of four or more straight, parallel lines with at most `spacing_px` between neighbours: hatching,
 /// steps. A line much wider than the others of its family stays.
-/// @param widths  of the pen, one a line
+/// @param widths    of the pen, one a line
+/// @param left_out  gets what was dropped, if given
 std::vector<Polyline> without_hatching(std::vector<Polyline> lines, const std::vector<double>& widths,
-                                       double spacing_px);
+                                       double spacing_px, std::vector<Polyline>* left_out = nullptr);
 
 }  // namespace smokemap

@@ -8,6 +8,7 @@
 #include "grids/paper_view.hpp"
 #include "sketch/drawing_lines.hpp"
 #include "sketch/figures.hpp"
+#include "sketch/hatching.hpp"
 #include "sketch/pen.hpp"
 #include "sketch/skeleton.hpp"
 
@@ -39,6 +40,26 @@ double usual_width(const std::vector<SkeletonBranch>& branches, const std::vecto
   return *nth;
 }
 
+void add_strokes(const std::vector<Polyline>& lines, StrokeKind kind, double width_px, double scale,
+                 SketchPhoto& photo) {
+  for (const Polyline& line : lines) {
+    Stroke stroke;
+    stroke.id = "photo-" + std::to_string(photo.strokes.size());
+    stroke.kind = kind;
+    stroke.width_px = width_px;
+    for (const auto& p : line) stroke.points_px.push_back((p + Point2(0.5, 0.5)) / scale - Point2(0.5, 0.5));
+    photo.strokes.push_back(std::move(stroke));
+  }
+}
+
+/// Lines that clean_sketch() knows filled areas by.
+std::vector<Polyline> lines_across(const std::vector<Hatching>& areas) {
+  std::vector<Polyline> lines;
+  for (const Hatching& area : areas)
+    for (const Segment2& line : hatching_lines(area)) lines.push_back({line.a, line.b});
+  return lines;
+}
+
 Result<SketchPhoto> read_drawing(const cv::Mat& picture, const SketchPhotoParams& params, const Progress& progress) {
   if (const auto valid = params.validate(); !valid) return valid.error();
   if (1e-6 * picture.rows * static_cast<double>(picture.cols) > params.max_megapixels)
@@ -57,6 +78,8 @@ Result<SketchPhoto> read_drawing(const cv::Mat& picture, const SketchPhotoParams
     photo.warnings.push_back("The paper is ruled: " + std::to_string(ruled) + " printed lines were left out.");
   drop_small_figures(mask, params.min_stroke_share * side, params.text_share * side);
   drop_rows_of_letters(mask);
+  const std::vector<Hatching> hatched = find_hatched_ink(mask);
+  outline_hatched_ink(hatched, std::max(3, static_cast<int>(0.003 * side)), mask);
   if (progress.cancelled()) return fail(Errc::kCancelled, "reading the drawing was cancelled");
   progress.tell(0.5, "lines");
   if (cv::countNonZero(mask) == 0) return fail(Errc::kDegenerate, "nothing drawn was found in the photograph");
@@ -72,20 +95,20 @@ Result<SketchPhoto> read_drawing(const cv::Mat& picture, const SketchPhotoParams
   const std::vector<double> widths = pen_widths(mask, branches);
   const double pen = usual_width(branches, widths);
   auto lines = straightened(branches, params.simplify_pens * pen);
-  const std::size_t before = lines.size();
-  lines = without_hatching(std::move(lines), widths, 0.05 * side);
-  if (lines.size() < before)
-    photo.warnings.push_back("Hatching and steps were left out: " + std::to_string(before - lines.size()) + " lines.");
+  std::vector<Polyline> left_out;
+  lines = without_hatching(std::move(lines), widths, 0.05 * side, &left_out);
+  if (!left_out.empty())
+    photo.warnings.push_back("Hatching and steps were left out: " + std::to_string(left_out.size()) + " lines.");
+  if (!hatched.empty())
+    photo.warnings.push_back(std::to_string(hatched.size()) +
+                             (hatched.size() == 1 ? " hatched area is" : " hatched areas are") + " taken as filled.");
   if (lines.empty()) return fail(Errc::kDegenerate, "nothing drawn was found in the photograph");
   photo.width_px = bgr->cols;
   photo.height_px = bgr->rows;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    Stroke stroke;
-    stroke.id = "photo-" + std::to_string(i);
-    stroke.width_px = std::max(1.0, pen / work.scale);
-    for (const auto& p : lines[i]) stroke.points_px.push_back((p + Point2(0.5, 0.5)) / work.scale - Point2(0.5, 0.5));
-    photo.strokes.push_back(std::move(stroke));
-  }
+  const double pen_px = std::max(1.0, pen / work.scale);
+  add_strokes(lines, StrokeKind::kWall, pen_px, work.scale, photo);
+  add_strokes(left_out, StrokeKind::kNote, pen_px, work.scale, photo);
+  add_strokes(lines_across(hatched), StrokeKind::kNote, pen_px, work.scale, photo);
   progress.tell(1, "done");
   return photo;
 }

@@ -26,13 +26,14 @@ struct SketchPhotoParams {
 struct SketchPhoto {
   int width_px = 0;  ///< of the photograph: strokes are in its pixels
   int height_px = 0;
-  std::vector<Stroke> strokes;        ///< centre lines, kWall, ids "photo-0", "photo-1", ... in reading order
+  std::vector<Stroke> strokes;        ///< centre lines of walls, then what hatches areas and steps, as notes; ids
+                                      ///< "photo-0", "photo-1", ... in reading order
   std::vector<std::string> warnings;  ///< for people, one line each
 };
 
 /// Photograph of a drawing (pen on white, squared or ruled paper, shadows) -> centre lines of the walls drawn.
-/// The light is divided out, ruled lines (thin, faint, parallel, evenly spaced) are suppressed, letters and hatching
-/// dropped where recognisable, and the rest is thinned and traced from junction to junction.
+/// The light is divided out, ruled lines (thin, faint, parallel, evenly spaced) are suppressed, letters
+/// dropped and hatched areas outlined where recognisable, and the rest is thinned and traced from junction to junction.
 ///
 /// @return kInvalidArgument for an empty picture, kTooLarge over the limit, kDegenerate if nothing was drawn,
 /// kCancelled. Cost: about 0.3 s for 2 megapixels. Deterministic.
