@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "acg/association.hpp"
 #include "acg/corner_links.hpp"
@@ -14,17 +15,24 @@ constexpr double kTakeUp_m = 3.0;   ///< of way between two rounds while the pla
 constexpr double kWindow_m = 8.0;   ///< of way whose poses are free meanwhile
 constexpr double kFinest_m = 0.08;  ///< last robust width
 constexpr int kReweights = 2;
+constexpr double kSure = 0.5;         ///< weight of a link that bears out others
 constexpr double kCornerWidth = 1.5;  ///< a crossing is less sure than a face
 
 /// Graduated non-convexity: weights from the misfits and each wall's width as it is in this round.
 void weigh(SolveInput& input, const std::vector<double>& width_m) {
   const auto width = [&](int wall) { return std::max(kFinest_m, width_m[static_cast<std::size_t>(wall)]); };
-  for (PieceLink& link : input.links)
+  std::set<std::pair<std::size_t, int>> on_wall;  // which node sees a face of which wall, for sure
+  for (PieceLink& link : input.links) {
     if (link.weight > 0) link.weight = robust_weight(link.misfit_m, width(link.wall));
-  for (CornerLink& link : input.corners)
-    if (link.weight > 0)
-      link.weight = link.borne_out *
-                    robust_weight(link.misfit_m, kCornerWidth * std::max(width(link.walls[0]), width(link.walls[1])));
+    if (link.weight > kSure) on_wall.insert({link.node, link.wall});
+  }
+  for (CornerLink& link : input.corners) {
+    if (link.weight <= 0) continue;
+    // Another link of the node bears it out, or both walls do: their faces are those that meet.
+    const bool by_walls = on_wall.contains({link.node, link.walls[0]}) && on_wall.contains({link.node, link.walls[1]});
+    link.weight = (by_walls ? 1.0 : link.borne_out) *
+                  robust_weight(link.misfit_m, kCornerWidth * std::max(width(link.walls[0]), width(link.walls[1])));
+  }
 }
 
 }  // namespace

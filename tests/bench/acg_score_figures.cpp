@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acg/corner_links.hpp"
+#include "acg/plan_model.hpp"
 #include "acg/scan_pieces.hpp"
 #include "geometry/angle.hpp"
 
@@ -10,6 +12,7 @@ namespace smokemap::bench {
 namespace {
 
 constexpr double kJudged_m = 1.5;     ///< walls shorter than this are not judged missing or new
+constexpr double kLinked_m = 0.25;    ///< from a crossing to where the plan's corner shows its own
 constexpr double kJudgedReach_m = 8;  ///< corners farther from the robot need not be linked
 
 double share_of(double part, double all) { return all > 0 ? std::min(1.0, part / all) : 1; }
@@ -61,15 +64,35 @@ void score_corners(const AcgTruth& truth, const MergedMap& merged, AcgScore& out
   out.within_never = share_of(never_within, static_cast<double>(never.size()));
 }
 
+/// The free sectors of the plan's true corners, where these truly are.
+std::vector<CornerSector> true_sectors(const DemoScenario& demo) {
+  const auto plan = make_plan_model(demo.truth.layout, {});
+  GraphState truth;
+  if (!plan) return {};
+  for (const Point2& p : demo.truth.corner_world) truth.corners.push_back({demo.to_map(p).x(), demo.to_map(p).y()});
+  std::vector<CornerSector> out;
+  for (const CornerSector& s : corner_sectors(*plan, truth))
+    if (demo.truth.wall_source[static_cast<std::size_t>(s.wall_a)] >= 0 &&
+        demo.truth.wall_source[static_cast<std::size_t>(s.wall_b)] >= 0)
+      out.push_back(s);
+  return out;
+}
+
+/// Whether a seen crossing truly is a corner of the plan: there, and as open in the same direction. What a door jamb or
+/// a cupboard beside a corner shows is none.
+bool is_sector(const CornerSector& sector, const DemoScenario& demo, const Pose2& pose, const Corner& seen) {
+  const Point2 corner = demo.to_map(demo.truth.corner_world[static_cast<std::size_t>(sector.corner)]);
+  return (corner - sector.offset_map - pose * seen.position).norm() < kLinked_m &&
+         std::abs(wrap_angle(sector.orientation_rad - seen.orientation_rad - pose.heading())) < kPi / 4 &&
+         std::abs(sector.opening_rad - seen.opening_rad) < kPi / 4;
+}
+
 /// A link is right when the corner truly lies behind the seen crossing: within a wall's thickness and some. Found are
 /// those of the crossings seen, by the nodes that are asked, that truly are a corner of the plan.
 void score_links(const AcgTruth& truth, const MergedMap& merged, AcgScore& out) {
   const DemoScenario& demo = truth.demo;
   const AcgParams params;
-  std::vector<Point2> corners;
-  for (std::size_t c = 0; c < merged.corners.size(); ++c)
-    if (demo.truth.layout.corners[c].degree >= 2 && of_a_true_wall(demo, c))
-      corners.push_back(demo.to_map(demo.truth.corner_world[c]));
+  const std::vector<CornerSector> sectors = true_sectors(demo);
   double kept = 0, right = 0, seen = 0, found = 0;
   std::vector<Point2> right_places;
   for (const MapLink& link : merged.links) {
@@ -87,7 +110,7 @@ void score_links(const AcgTruth& truth, const MergedMap& merged, AcgScore& out) 
     for (const Corner& c : view_of(truth.graph.nodes[i], params).corners) {
       const Point2 p = pose * c.position;
       if (c.position.norm() > kJudgedReach_m ||
-          std::none_of(corners.begin(), corners.end(), [&](const Point2& q) { return (q - p).norm() < 0.25; }))
+          std::none_of(sectors.begin(), sectors.end(), [&](const auto& s) { return is_sector(s, demo, pose, c); }))
         continue;
       ++seen;
       found +=
