@@ -15,6 +15,24 @@ constexpr double kGain = 0.3;           ///< log odds, from which a line has a r
 constexpr double kBetter = 0.005;       ///< of standing; the beliefs have weighed the arrangement itself
 constexpr double kDoubt = 0.05;         ///< a probability of another place that is as good as none
 
+/// Per line: what the chance that the nearest seen line is really elsewhere adds. Lines that nobody saw go with those;
+/// how far they may be from them the normal equations know.
+std::vector<double> doubted_variance(const PlanModel& plan, std::size_t axis, const std::vector<LineBelief>& beliefs,
+                                     const std::vector<double>& seen_m) {
+  std::vector<double> out(plan.lines[axis].size(), 0);
+  for (std::size_t k = 0; k < out.size() && !beliefs.empty(); ++k) {
+    double nearest = 1e9;
+    for (std::size_t s = 0; s < out.size(); ++s) {
+      const double away = std::abs(plan.lines[axis][s] - plan.lines[axis][k]);
+      if (seen_m[s] < kLineSeen_m || away >= nearest) continue;
+      nearest = away;
+      const double elsewhere = beliefs[s].elsewhere;
+      out[k] = elsewhere > kDoubt ? elsewhere * beliefs[s].apart_m * beliefs[s].apart_m : 0;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 LineHolds AutoCompleteGraph::Impl::line_holds(const Learnt& l) const {
@@ -103,18 +121,13 @@ Result<Ok> AutoCompleteGraph::Impl::work_out_sigmas(const SolveInput& last, Lear
   auto sigmas = corner_sigmas_m(last, stretch_learnt(l), l.state);
   if (!sigmas) return sigmas.error();
   l.sigma_m = std::move(*sigmas);
-  for (std::size_t c = 0; c < l.sigma_m.size(); ++c) {
-    double variance = 0;
-    for (const std::size_t axis : {0u, 1u}) {
-      if (l.beliefs[axis].empty()) continue;
-      const LineBelief& belief = l.beliefs[axis][static_cast<std::size_t>(plan->line_of_corner[axis][c])];
-      // What the normal equations expect to lie that far away is in their sigma already.
-      // Where that lies along one axis only, it is the root of two more than per coordinate.
-      const double expected = std::erfc(LineBelief::kNear_m / std::max(1e-3, 2 * l.sigma_m[c]));
-      const double elsewhere = std::max(0.0, belief.elsewhere - expected);
-      if (elsewhere > kDoubt) variance += 0.5 * elsewhere * belief.apart_m * belief.apart_m;
+  for (const std::size_t axis : {0u, 1u}) {
+    const std::vector<double> variance =
+        doubted_variance(*plan, axis, l.beliefs[axis], seen_on_lines_m(*plan, axis, l.walls, l.linked_m));
+    for (std::size_t c = 0; c < l.sigma_m.size(); ++c) {
+      const auto line = static_cast<std::size_t>(plan->line_of_corner[axis][c]);
+      l.sigma_m[c] = std::hypot(l.sigma_m[c], std::sqrt(0.5 * variance[line]));
     }
-    l.sigma_m[c] = std::hypot(l.sigma_m[c], std::sqrt(variance));
   }
   return Ok{};
 }

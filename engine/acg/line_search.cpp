@@ -8,8 +8,9 @@
 namespace smokemap {
 namespace {
 
-constexpr double kWallSays = 3.0;   ///< log odds of a wall that was seen on its whole length
-constexpr double kFullSay_m = 1.5;  ///< shorter walls say less
+constexpr double kShareSays = 2.0;   ///< log odds of a wall that was seen on its whole length
+constexpr double kLengthSays = 2.0;  ///< more for one that was seen at least on kFullSay_m
+constexpr double kFullSay_m = 1.5;
 constexpr double kHeldSays = 30.0;  ///< log odds of a line that a person holds
 constexpr double kHeld_m = 0.15;
 constexpr double kStartSays = 8.0;          ///< most that the start may say
@@ -37,6 +38,13 @@ std::vector<double> lines_now_m(const PlanModel& plan, const GraphState& state, 
   return sum;
 }
 
+/// The share of it that was seen tells a wall from others like it; that a metre or two of it was seen at all tells a
+/// place with a wall from one without.
+double log_odds(double share, double length_m) {
+  return kShareSays * share * std::min(1.0, length_m / kFullSay_m) +
+         kLengthSays * std::clamp(share * length_m / kFullSay_m, -1.0, 1.0);
+}
+
 /// Every wall square to the axis, at every place its line may have.
 void hear_walls(const SensedFaces& faces, const PlanModel& plan, const GraphState& state, std::size_t axis,
                 const LineHolds& holds, LineChain& chain) {
@@ -47,10 +55,9 @@ void hear_walls(const SensedFaces& faces, const PlanModel& plan, const GraphStat
     const Segment2 s = state.segment(wall);
     const auto line = static_cast<std::size_t>(plan.line_of_corner[axis][static_cast<std::size_t>(wall.corner_a)]);
     const double at = across.dot(s.midpoint()), from = along.dot(s.a), to = along.dot(s.b);
-    const double says = kWallSays * std::min(1.0, wall.length_m / kFullSay_m);
     for (std::size_t place = 0; place < chain.support[line].size(); ++place)
-      chain.support[line][place] +=
-          static_cast<float>(says * faces.support(at + place_offset_m(place), from, to, wall.half_thickness_m));
+      chain.support[line][place] += static_cast<float>(
+          log_odds(faces.support(at + place_offset_m(place), from, to, wall.half_thickness_m), wall.length_m));
   }
 }
 
