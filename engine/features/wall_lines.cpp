@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <numeric>
 #include <unordered_map>
 
@@ -10,6 +11,8 @@
 
 namespace smokemap {
 namespace {
+
+constexpr double kFarthest_m = 1e6;  ///< what is said to lie farther, or nowhere, is no hit
 
 /// A hit with the direction of the surface around it.
 struct DirectedHit {
@@ -154,7 +157,11 @@ Result<Ok> WallLineParams::validate() const {
       .result();
 }
 
-std::vector<WallLine> find_wall_lines(const std::vector<PosedHit>& hits, const WallLineParams& params) {
+std::vector<WallLine> find_wall_lines(const std::vector<PosedHit>& all, const WallLineParams& params) {
+  std::vector<PosedHit> hits;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(hits), [](const PosedHit& hit) {
+    return hit.point.cwiseAbs().maxCoeff() < kFarthest_m && hit.seen_from.cwiseAbs().maxCoeff() < kFarthest_m;
+  });
   std::vector<DirectedHit> directed = with_directions(hits, params);
   std::vector<std::size_t> seeds(hits.size());
   std::iota(seeds.begin(), seeds.end(), std::size_t{0});

@@ -34,7 +34,8 @@ struct WallLineParams {
   Result<Ok> validate() const;
 };
 
-/// Wall faces in a set of hits that need no order (several scans may overlap). Longest first.
+/// Wall faces in a set of hits that need no order (several scans may overlap); those that are not finite are left out.
+/// Longest first.
 /// Cost: O(n log n) with a grid of neighbours; about 3 ms for 2000 hits. Deterministic.
 /// Method: local directions by principal components, lines grown from the hit with most aligned neighbours, total least
 /// squares, cut at gaps. The two faces of a thin wall stay apart: they are seen from different sides.
