@@ -18,6 +18,7 @@
 #include "tests/bench/foreign_figures.hpp"
 #include "tests/bench/matching_figures.hpp"
 #include "tests/bench/segmentation_figures.hpp"
+#include "tests/bench/stability_figures.hpp"
 
 namespace {
 
@@ -52,6 +53,9 @@ Result<Ok> print_judged(const std::filesystem::path& data, bool every) {
     std::printf("\nRooms on judged maps\n");
     const Result<Ok> done = bench::print_judged_segmentation((data / "segmentation").string(), every);
     if (!done) return done;
+    std::printf("\nThe same rooms on a map that is a little different\n");
+    const Result<Ok> same = bench::print_stability((data / "segmentation").string());
+    if (!same) return same;
   }
   if (!std::filesystem::is_directory(data / "sketch_matching")) return Ok{};
   std::printf("\nPairs and points on judged maps\n");

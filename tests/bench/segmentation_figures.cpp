@@ -117,7 +117,8 @@ void judge_map(const std::filesystem::path& place, const char* picture, bool mao
     const std::string name = file.path().filename().string();
     if (!name.starts_with("gt") || file.path().extension() != ".png") continue;
     const cv::Mat truth = rooms_of_drawing(cv::imread(file.path().string(), cv::IMREAD_GRAYSCALE));
-    const double score = found && truth.size() == found->labels.size() ? strict_score(found->labels, truth) : 0;
+    if (truth.size() != free_space->size()) continue;  // of another picture of the same place
+    const double score = found ? strict_score(found->labels, truth) : 0;
     tally.add(place.filename().string(), score);
     if (every_map) std::printf("    %s %s  %.3f\n", place.filename().c_str(), name.c_str(), score);
   }

@@ -3,7 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
+#include <random>
+#include <set>
 
+#include "core/random.hpp"
+#include "tests/support/building_pictures.hpp"
+#include "tests/support/plan_pictures.hpp"
 #include "tests/support/result_matchers.hpp"
 
 namespace smokemap {
@@ -53,6 +58,98 @@ TEST(Constrictions, RefuseWhatCannotBeSplit) {
   ConstrictionParams params;
   params.pinch_ratio = 2;
   EXPECT_THAT(segment_by_constrictions(rooms_with_a_door(), params), test::Fails(Errc::kInvalidArgument));
+}
+
+/// Share of true rooms that one region covers by more than four fifths of their union.
+double rooms_parted(const cv::Mat& free_space, const test::PlanPicture& plan) {
+  const auto found = segment_by_constrictions(free_space, matching_segmentation_params());
+  if (!found) return 0;
+  std::set<int> rooms;
+  for (const Region& region : found->regions)
+    if (const auto room = test::true_room(found->labels, region.label, plan.rooms); room.overlap > 0.8)
+      rooms.insert(room.room);
+  return static_cast<double>(rooms.size()) / static_cast<double>(plan.boxes.size());
+}
+
+TEST(Constrictions, FindTheRoomsOfOfficesHallsAndTwoWings) {
+  double sum = 0;
+  for (std::uint64_t seed = 50; seed < 56; ++seed) {
+    std::mt19937_64 random(seed);
+    const test::PlanPicture plan = seed % 3 == 0   ? test::office_plan(random)
+                                   : seed % 3 == 1 ? test::hall_plan(random)
+                                                   : test::building_plan(random);
+    sum += rooms_parted(plan.free_space, plan);
+  }
+  EXPECT_GT(sum / 6, 0.8);
+}
+
+TEST(Constrictions, LabelAllFreeSpaceAndNothingElseInRegionsOfOnePiece) {
+  for (std::uint64_t seed = 60; seed < 64; ++seed) {
+    std::mt19937_64 random(seed);
+    const cv::Mat map = seed % 2 ? test::hall_plan(random).free_space : test::building_plan(random).free_space;
+    const auto found = segment_by_constrictions(map, matching_segmentation_params());
+    ASSERT_THAT(found, test::IsOk());
+    EXPECT_EQ(cv::countNonZero((map == 255) != (found->labels > 0)), 0);
+    for (const Region& region : found->regions) {
+      cv::Mat parts;
+      const cv::Mat own = found->labels == region.label;
+      EXPECT_EQ(cv::connectedComponents(own, parts, 4), 2) << "region " << region.label;
+      EXPECT_EQ(cv::countNonZero(own), static_cast<int>(region.area_px));
+    }
+  }
+}
+
+TEST(Constrictions, BordersJoinRegionsThatTouchAndLieBetweenThem) {
+  std::mt19937_64 random(65);
+  const auto found = segment_by_constrictions(test::office_plan(random).free_space, matching_segmentation_params());
+  ASSERT_THAT(found, test::IsOk());
+  ASSERT_GE(found->borders.size(), 4u);
+  for (const RegionBorder& border : found->borders) {
+    EXPECT_NE(border.label_a, border.label_b);
+    EXPECT_GT(border.width_px, 0);
+    const Point2 middle = border.line_px.midpoint();
+    const cv::Rect around(static_cast<int>(middle.x()) - 12, static_cast<int>(middle.y()) - 12, 25, 25);
+    const cv::Mat near = found->labels(around & cv::Rect({}, found->labels.size()));
+    EXPECT_GT(cv::countNonZero(near == border.label_a), 0);
+    EXPECT_GT(cv::countNonZero(near == border.label_b), 0);
+  }
+}
+
+TEST(Constrictions, FindTheSameRoomsWithAPixelOfNoise) {
+  double sum = 0;
+  for (std::uint64_t seed = 70; seed < 73; ++seed) {
+    std::mt19937_64 random(seed);
+    const test::PlanPicture plan = test::office_plan(random);
+    cv::Mat rough = plan.free_space.clone(), shrunk;
+    cv::erode(plan.free_space, shrunk, cv::Mat());
+    for (int y = 0; y < rough.rows; ++y)
+      for (int x = 0; x < rough.cols; ++x)
+        if (shrunk.at<uchar>(y, x) != plan.free_space.at<uchar>(y, x) && uniform01(random) < 0.2)
+          rough.at<uchar>(y, x) = 0;
+    sum += rooms_parted(rough, plan);
+  }
+  EXPECT_GT(sum / 3, 0.8);
+}
+
+TEST(Constrictions, FindTheSameRoomsOnAMapTurnedByAQuarter) {
+  std::mt19937_64 random(75);
+  const test::PlanPicture plan = test::office_plan(random);
+  test::PlanPicture turned = plan;
+  cv::rotate(plan.free_space, turned.free_space, cv::ROTATE_90_CLOCKWISE);
+  cv::rotate(plan.rooms, turned.rooms, cv::ROTATE_90_CLOCKWISE);
+  EXPECT_NEAR(rooms_parted(plan.free_space, plan), rooms_parted(turned.free_space, turned), 0.12);
+}
+
+TEST(Constrictions, DoNotMindAnotherHouseOnTheSheet) {
+  std::mt19937_64 random(76);
+  const test::PlanPicture plan = test::office_plan(random);
+  cv::Mat both;
+  cv::copyMakeBorder(plan.free_space, both, 0, 0, 0, 240, cv::BORDER_CONSTANT, cv::Scalar(0));
+  both(cv::Rect(plan.free_space.cols + 20, 60, 200, 200)).setTo(255);  // one hall, joined to nothing
+  const auto alone = segment_by_constrictions(plan.free_space, matching_segmentation_params());
+  const auto beside = segment_by_constrictions(both, matching_segmentation_params());
+  ASSERT_TRUE(alone && beside);
+  EXPECT_EQ(beside->regions.size(), alone->regions.size() + 1);
 }
 
 }  // namespace
