@@ -92,6 +92,7 @@ Result<Ok> run_slam(const SlamOptions& options) {
     if (!std::holds_alternative<Odometry>(item) && ++fed % kOptimizeEveryScans == 0) slam->optimize();
     item = Odometry();  // a long log and its map need not be held at once
   }
+  log->items = {};  // the last solve needs most
   slam->polish();
   const Trajectory trajectory = poses_of_readings(readings, slam->trajectory());
   const PoseGraph graph = slam->graph();

@@ -19,7 +19,7 @@ void LogOddsGrid::clear() {
   counts_.clear();
 }
 
-void LogOddsGrid::reserve(const Eigen::Vector2d& low, const Eigen::Vector2d& high) {
+void LogOddsGrid::grow(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double margin_m) {
   if (!counts_.empty() && frame_.contains(frame_.cell_of(low)) && frame_.contains(frame_.cell_of(high))) return;
   Eigen::Vector2d from = low, to = high;
   if (!counts_.empty()) {
@@ -27,7 +27,7 @@ void LogOddsGrid::reserve(const Eigen::Vector2d& low, const Eigen::Vector2d& hig
     from = from.cwiseMin(frame_.origin);
     to = to.cwiseMax(Eigen::Vector2d(frame_.origin + size * frame_.resolution_m));
   }
-  const GridFrame wider = frame_around(from, to, frame_.resolution_m, kGrowBy_m);
+  const GridFrame wider = frame_around(from, to, frame_.resolution_m, margin_m);
   std::vector<Counts> moved(wider.cell_count());
   if (!counts_.empty()) {
     const Cell shift = wider.cell_of(frame_.center_of({0, 0}));
@@ -43,7 +43,7 @@ void LogOddsGrid::reserve(const Eigen::Vector2d& low, const Eigen::Vector2d& hig
 
 void LogOddsGrid::trace(const Eigen::Vector2d& origin, const Eigen::Vector2d& end, bool hit, int times) {
   if (!origin.allFinite() || !end.allFinite()) return;
-  reserve(origin.cwiseMin(end), origin.cwiseMax(end));
+  grow(origin.cwiseMin(end), origin.cwiseMax(end), kGrowBy_m);
   const Cell last = frame_.cell_of(end);
   walk_ray(frame_, origin, end, [&](Cell cell) {
     Counts& counts = counts_[frame_.index(cell)];

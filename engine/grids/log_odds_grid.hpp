@@ -29,8 +29,9 @@ class LogOddsGrid {
   void remove_hit(const Eigen::Vector2d& origin, const Eigen::Vector2d& end) { trace(origin, end, true, -1); }
   void remove_free(const Eigen::Vector2d& origin, const Eigen::Vector2d& end) { trace(origin, end, false, -1); }
 
-  /// Makes room for points within these corners; never shrinks.
-  void reserve(const Eigen::Vector2d& low, const Eigen::Vector2d& high);
+  /// Makes room for points within these corners, and for no more; never shrinks. Growing by itself the grid takes room
+  /// to spare, and for a moment twice what it has.
+  void reserve(const Eigen::Vector2d& low, const Eigen::Vector2d& high) { grow(low, high, 0); }
   /// Log odds of a cell, clamped; 0 where nothing was seen or outside.
   double log_odds(Cell cell) const;
   bool seen(Cell cell) const;
@@ -44,6 +45,7 @@ class LogOddsGrid {
     std::int32_t hits = 0;
     std::int32_t passes = 0;
   };
+  void grow(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double margin_m);
   void trace(const Eigen::Vector2d& origin, const Eigen::Vector2d& end, bool hit, int times);
   std::int8_t percent(const Counts& counts) const;
 

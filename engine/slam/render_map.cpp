@@ -1,5 +1,7 @@
 #include "slam/render_map.hpp"
 
+#include <limits>
+
 #include "core/check.hpp"
 
 namespace smokemap {
@@ -30,6 +32,7 @@ int MapRenderer::update(const PoseGraph& graph, const std::vector<Pose2>& T_map_
     grid_.clear();
     drawn_.clear();
   }
+  if (drawn_.empty()) make_room(graph, T_map_nodes);
   int count = 0;
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
     const PoseNode& node = graph.nodes[i];
@@ -47,6 +50,24 @@ int MapRenderer::update(const PoseGraph& graph, const std::vector<Pose2>& T_map_
     ++count;
   }
   return count;
+}
+
+/// All at once: a grid that grows while it is drawn needs twice the memory.
+void MapRenderer::make_room(const PoseGraph& graph, const std::vector<Pose2>& T_map_nodes) {
+  Point2 low = Point2::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  const auto include = [&](const Point2& p) {
+    if (!p.allFinite()) return;
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  };
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+    const Pose2& T_map_node = pose_of_node(graph, T_map_nodes, i);
+    include(T_map_node.translation());
+    for (const auto& points : {graph.nodes[i].hits_robot, graph.nodes[i].free_ends_robot})
+      if (points)
+        for (const Point2& p : *points) include(T_map_node * p);
+  }
+  if (low.allFinite() && high.allFinite()) grid_.reserve(low, high);
 }
 
 void MapRenderer::draw(const Drawn& what, bool add) {

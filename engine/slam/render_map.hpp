@@ -36,6 +36,7 @@ class MapRenderer {
     Pose2 T_map_robot;
     std::shared_ptr<const std::vector<Point2>> hits_robot, free_ends_robot;
   };
+  void make_room(const PoseGraph& graph, const std::vector<Pose2>& T_map_nodes);
   void draw(const Drawn& what, bool add);
 
   RenderParams params_;

@@ -39,7 +39,8 @@ class ScratchFolder {
 /// Writes rosbag2's SQLite form: its tables as every version since Dashing has them, plus those of Humble when asked.
 class BagFile {
  public:
-  explicit BagFile(const std::filesystem::path& path, bool humble = true, bool with_log = false) {
+  explicit BagFile(const std::filesystem::path& path, bool humble = true, bool with_log = false,
+                   bool with_index = false) {
     EXPECT_EQ(sqlite3_open(path.c_str(), &database_), SQLITE_OK);
     if (with_log) run("PRAGMA journal_mode=WAL");
     run("PRAGMA synchronous=OFF");  // nobody pulls the plug of a test
@@ -47,6 +48,7 @@ class BagFile {
         "serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL)");
     run("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL, "
         "data BLOB NOT NULL)");
+    if (with_index) run("CREATE INDEX timestamp_idx ON messages (timestamp ASC)");
     if (humble) {
       run("CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL)");
       run("INSERT INTO schema VALUES(3, 'humble')");
