@@ -114,6 +114,18 @@ TEST(DamagedBag, WithAnyBytesChangedIsReadOrRefusedButNeverHarms) {
   EXPECT_GT(answered, 5);
 }
 
+/// It is mended in memory: evidence stays as it was found.
+TEST(DamagedBag, IsItselfLeftAlone) {
+  const test::ScratchFolder folder;
+  const FileBytes whole = bag_of_scans(folder / "whole.db3", false);
+  write_bytes(folder / "cut.db3", whole, whole.size() / 2);
+  const FileBytes before = bytes_of(folder / "cut.db3");
+  ASSERT_THAT(read_log(folder / "cut.db3"), test::IsOk());
+  EXPECT_EQ(bytes_of(folder / "cut.db3"), before);
+  for (const char* beside : {"cut.db3-wal", "cut.db3-shm", "cut.db3-journal"})
+    EXPECT_FALSE(std::filesystem::exists(folder / beside)) << beside;
+}
+
 FileBytes mcap_of_scans(int scans) {
   std::ostringstream out;
   LogWriter writer(out);
