@@ -1,6 +1,6 @@
 // The Auto-Complete Graph, white box: ./run bench acg [--seeds N] [--first N] [--rows TEXT] [--data DIR] [--list]
 // [--no-published] [--json FILE]. --list names the rows; --rows takes those with TEXT in their name, so that the table
-// can be made in pieces (a seed of a row that merges at once takes some 5 s of CPU, online 1 to 3 minutes). What was
+// can be made in pieces (a seed of a row that merges at once takes some 5 s of CPU, online half a minute). What was
 // done is told on standard error. Data: simulation (generated buildings, wrong plans of them, a robot's lidar and
 // wheels through them), seeds 1..N, the real front end (SLAM) and the real alignment in the loop, no true pose
 // anywhere. Median over the seeds, the worst in brackets. Rows with "online" update after every node and measure each
