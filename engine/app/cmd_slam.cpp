@@ -10,7 +10,6 @@
 #include "recording/map_server.hpp"
 #include "recording/sensor_log.hpp"
 #include "recording/trajectory_tum.hpp"
-#include "slam/reading_poses.hpp"
 #include "slam/render_map.hpp"
 #include "slam/slam.hpp"
 
@@ -27,21 +26,11 @@ struct SlamOptions {
   double resolution_m = 0.05;
 };
 
-void feed(Slam& slam, const LogItem& item, bool lidar, bool radar, std::vector<Reading>& readings) {
-  const auto keep = [&](const Result<ScanOutcome>& outcome) {
-    // A scan that is refused is counted by Slam itself; the log goes on.
-    if (!outcome || !outcome->in_trajectory) return;
-    // A CARMEN scan brings its odometry along: one reading, not two.
-    if (!readings.empty() && readings.back().stamp == outcome->stamp && !readings.back().pose_of_scan)
-      readings.pop_back();
-    readings.push_back({outcome->stamp, outcome->T_odom_robot, outcome->in_trajectory});
-  };
-  if (const auto* odometry = std::get_if<Odometry>(&item)) {
-    slam.add_odometry(*odometry);
-    if (odometry->T_odom_robot.is_finite()) readings.push_back({odometry->stamp, odometry->T_odom_robot, std::nullopt});
-  }
-  if (const auto* scan = std::get_if<LaserScan>(&item); scan && lidar) keep(slam.add_scan(*scan));
-  if (const auto* sweep = std::get_if<RadarSweep>(&item); sweep && radar) keep(slam.add_sweep(*sweep));
+void feed(Slam& slam, const LogItem& item, bool lidar, bool radar) {
+  if (const auto* odometry = std::get_if<Odometry>(&item)) slam.add_odometry(*odometry);
+  // A scan that is refused is counted by Slam itself; the log goes on.
+  if (const auto* scan = std::get_if<LaserScan>(&item); scan && lidar) (void)slam.add_scan(*scan).ok();
+  if (const auto* sweep = std::get_if<RadarSweep>(&item); sweep && radar) (void)slam.add_sweep(*sweep).ok();
 }
 
 nlohmann::json stats_of(const Slam& slam, const SensorLog& log) {
@@ -85,16 +74,15 @@ Result<Ok> run_slam(const SlamOptions& options) {
   SlamParams params;
   params.beams.no_return_is_free = options.clear_air;
   auto slam = std::make_unique<Slam>(params);
-  std::vector<Reading> readings;
   std::size_t fed = 0;
   for (LogItem& item : log->items) {
-    feed(*slam, item, !radar_only, !lidar_only, readings);
+    feed(*slam, item, !radar_only, !lidar_only);
     if (!std::holds_alternative<Odometry>(item) && ++fed % kOptimizeEveryScans == 0) slam->optimize();
     item = Odometry();  // a long log and its map need not be held at once
   }
   log->items = {};  // the last solve needs most
   slam->polish();
-  const Trajectory trajectory = poses_of_readings(readings, slam->trajectory());
+  const Trajectory trajectory = slam->trajectory();
   const PoseGraph graph = slam->graph();
   const std::string stats = stats_of(*slam, *log).dump(1) + "\n";
   slam.reset();  // its back end is as large as the map that is drawn next

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 namespace smokemap {
@@ -30,14 +31,14 @@ class SystemClock final : public Clock {
   Stamp now() const override;
 };
 
-/// Stands still until told otherwise.
+/// Stands still until told otherwise, from any thread.
 class ManualClock final : public Clock {
  public:
   Stamp now() const override { return now_; }
   void advance(Stamp by) { now_ += by; }
 
  private:
-  Stamp now_ = 0;
+  std::atomic<Stamp> now_ = 0;
 };
 
 }  // namespace smokemap

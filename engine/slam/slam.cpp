@@ -119,7 +119,7 @@ Result<ScanOutcome> Slam::Impl::add_scan(const LaserScan& scan) {
   if (last_stamp_ == scan.stamp && last_ranges_ == scan.ranges_m && !anchors_.empty()) {
     ++counters_.duplicates;
     anchors_.push_back(anchors_.back());
-    return ScanOutcome{scan.stamp, ScanFate::kDuplicate, latest(), std::nullopt, 0, T_odom_last_, anchors_.size() - 1};
+    return ScanOutcome{scan.stamp, ScanFate::kDuplicate, latest(), std::nullopt, 0};
   }
   last_ranges_ = scan.ranges_m;
   begin();
@@ -136,7 +136,7 @@ Result<ScanOutcome> Slam::Impl::add_sweep(const RadarSweep& sweep) {
     last_sweep_ = sweep;
     sweep_is_new_ = true;
     T_odom_sweep_ = odometry_.at(sweep.stamp);
-    return ScanOutcome{sweep.stamp, ScanFate::kMatched, latest(), std::nullopt, 0, T_odom_sweep_, std::nullopt};
+    return ScanOutcome{sweep.stamp, ScanFate::kMatched, latest(), std::nullopt, 0};
   }
   begin();
   return add_points(sweep.stamp, sweep.robot,
@@ -191,7 +191,7 @@ ScanOutcome Slam::Impl::add_points(Stamp stamp, const std::string& robot, const 
     twist_ = smoothed(twist_, twist_of(T_track_before.inverse() * tracked.T_track_robot, seconds), seconds);
   if (tracked.fate == ScanFate::kNewPiece) twist_.reset();  // it led astray
   count(tracked.fate);
-  ScanOutcome outcome{stamp, tracked.fate, {}, std::nullopt, tracked.score, T_odom_last_, anchors_.size()};
+  ScanOutcome outcome{stamp, tracked.fate, {}, std::nullopt, tracked.score};
   if (tracked.node) {
     keep_node(stamp, robot, points, tracked);
     outcome.node = graph_.nodes.back().id;

@@ -22,11 +22,9 @@ const char* to_string(ScanFate fate);
 struct ScanOutcome {
   Stamp stamp = 0;
   ScanFate fate = ScanFate::kMatched;
-  StampedPose pose;                          ///< in map, with covariance since the last node
-  std::optional<int> node;                   ///< id of the graph node that was kept for this scan
-  double score = 0;                          ///< share of points that found their wall, 0 .. 1
-  std::optional<Pose2> T_odom_robot;         ///< odometry at the stamp, as it was used
-  std::optional<std::size_t> in_trajectory;  ///< where its pose will be; a sweep beside a lidar has none
+  StampedPose pose;         ///< in map, with covariance since the last node
+  std::optional<int> node;  ///< id of the graph node that was kept for this scan
+  double score = 0;         ///< share of points that found their wall, 0 .. 1
 };
 
 struct SlamCounters {
