@@ -236,10 +236,15 @@ PartTable alert_table(const Snapshot& s) {
   return table;
 }
 
-PartTable anchor_table(const ServerView& view) {
+PartTable anchor_table(const Snapshot& s, const ServerView& view) {
   PartTable table;
-  for (const auto& [id, pair] : view.anchors)
-    table[id] = to_text({{"px", point_json(pair.first)}, {"map", point_json(pair.second)}});
+  for (const auto& [id, pair] : view.anchors) {
+    Json anchor{{"px", point_json(pair.first)}, {"map", point_json(pair.second)}};
+    if (s.merged)
+      for (const MergedAnchor& merged : s.merged->anchors)
+        if (merged.id == id) anchor["outlier"] = merged.outlier, anchor["off_m"] = rounded_m(merged.residual_m);
+    table[id] = to_text(anchor);
+  }
   return table;
 }
 
@@ -278,7 +283,7 @@ PartTable part_table(Part part, const Snapshot& snapshot, const ServerView& view
     case Part::kAlerts:
       return alert_table(snapshot);
     case Part::kAnchors:
-      return anchor_table(view);
+      return anchor_table(snapshot, view);
   }
   return {};
 }

@@ -17,10 +17,10 @@ function sheet(carry: (x: number, y: number) => [number, number]): PlanMesh {
     }
   return { px, map: px.map(([x, y]) => carry(x, y)), triangles };
 }
-const world = (mesh: PlanMesh | null, anchors: Record<string, { px: [number, number]; map: [number, number] }> = {}): World => ({
+const world = (mesh: PlanMesh | null, anchors: Record<string, { px: [number, number]; map: [number, number]; off_m?: number; outlier?: boolean }> = {}): World => ({
   ...kEmptyWorld,
   planMesh: mesh,
-  tables: { ...kEmptyWorld.tables, anchors: new Map(Object.entries(anchors)) },
+  tables: { ...kEmptyWorld.tables, anchors: new Map(Object.entries(anchors).map(([id, one]) => [id, { outlier: false, ...one }])) },
 });
 
 describe('local scale', () => {
@@ -61,6 +61,10 @@ describe('fixed points', () => {
     const [anchor] = shownAnchors(world(mesh, { a: { px: [100, 100], map: [2.3, -2.4] } }));
     expect(anchor!.shown).toEqual([2, -2]);
     expect(anchor!.residualM).toBeCloseTo(0.5, 9);
+  });
+  test('that contradict the others say so, with the distance that the merge found', () => {
+    const [anchor] = shownAnchors(world(mesh, { a: { px: [100, 100], map: [2.3, -2.4], off_m: 1.62, outlier: true } }));
+    expect(anchor).toMatchObject({ residualM: 1.62, outlier: true });
   });
   test('say nothing where the plan says nothing', () => {
     expect(shownAnchors(world(mesh, { a: { px: [900, 900], map: [0, 0] } }))[0]!.residualM).toBeUndefined();

@@ -197,11 +197,11 @@ describe('the fit of the plan', () => {
   });
   test('a fixed point shows how far off it is, and the line to where the plan shows it', () => {
     const painter = new FitPainter();
-    painter.setAnchors([{ id: 'a', at: [1, 1], shown: [2, 1], residualM: 1 }]);
+    painter.setAnchors([{ id: 'a', at: [1, 1], shown: [2, 1], residualM: 1, outlier: false }]);
     const canvas = painted(painter);
     expect(canvas.of('lineTo')[0]!.args).toEqual([120, 90]);
     expect(canvas.of('fillText')[0]!.args[0]).toBe('1.0 m');
-    painter.setAnchors([{ id: 'a', at: [1, 1], shown: undefined, residualM: undefined }]);
+    painter.setAnchors([{ id: 'a', at: [1, 1], shown: undefined, residualM: undefined, outlier: false }]);
     expect(painted(painter).of('lineTo')).toEqual([]);
     expect(painted(painter).of('fillText')[0]!.args[0]).toBe('?');
   });

@@ -222,5 +222,24 @@ TEST(PartTables, KeepTheirSchemasWhateverNumbersASnapshotHolds) {
   }
 }
 
+TEST(Anchors, TellWhatTheMergeMadeOfThem) {
+  Snapshot snapshot;
+  auto merged = std::make_shared<MergedMap>();
+  merged->anchors = {{"kept", 0.031, false}, {"wrong", 1.62, true}, {"gone", 1, false}};
+  merged->anchors.push_back({"odd", std::numeric_limits<double>::quiet_NaN(), true});
+  snapshot.merged = merged;
+  ServerView view;
+  for (const char* id : {"kept", "wrong", "odd", "new"}) view.anchors[id] = {Point2(100, 500), Point2(-3.5, 0.25)};
+  const PartTable table = part_table(Part::kAnchors, snapshot, view);
+  ASSERT_EQ(table.size(), 4U);
+  EXPECT_EQ(Json::parse(table.at("kept"))["outlier"], false);
+  EXPECT_NEAR(Json::parse(table.at("kept"))["off_m"].get<double>(), 0.03, 0.006);
+  EXPECT_EQ(Json::parse(table.at("wrong"))["outlier"], true);
+  EXPECT_NEAR(Json::parse(table.at("wrong"))["off_m"].get<double>(), 1.62, 0.006);
+  EXPECT_FALSE(Json::parse(table.at("new")).contains("outlier")) << "no merge has seen it yet";
+  const test::Schema schema(std::filesystem::path(SMOKEMAP_SOURCE_DIR) / "proto/ws/parts.schema.json");
+  for (const auto& [id, text] : table) EXPECT_EQ(schema.complaint(Json::parse(text), schema.def("anchors")), "") << id;
+}
+
 }  // namespace
 }  // namespace smokemap::server

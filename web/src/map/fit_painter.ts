@@ -80,7 +80,7 @@ function paintLink(context: CanvasRenderingContext2D, frame: Frame, { p, state }
   context.stroke();
 }
 
-function paintAnchor(context: CanvasRenderingContext2D, frame: Frame, { at, shown, residualM }: ShownAnchor): void {
+function paintAnchor(context: CanvasRenderingContext2D, frame: Frame, { at, shown, residualM, outlier }: ShownAnchor): void {
   const { palette } = frame;
   const [x, y] = place(frame, mapToView(at));
   if (shown) {
@@ -89,12 +89,12 @@ function paintAnchor(context: CanvasRenderingContext2D, frame: Frame, { at, show
     context.moveTo(x, y);
     context.lineTo(u, v);
     context.lineWidth = 2.5;
-    context.strokeStyle = palette.plan;
+    context.strokeStyle = outlier ? palette.danger : palette.plan;
     context.stroke();
   }
   context.beginPath();
   context.arc(x, y, 14, 0, 2 * Math.PI);
-  context.fillStyle = palette.plan;
+  context.fillStyle = outlier ? palette.danger : palette.plan;
   context.fill();
   context.lineWidth = 2.5;
   context.strokeStyle = palette.halo;

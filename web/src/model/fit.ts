@@ -35,13 +35,15 @@ export interface ShownAnchor {
   readonly shown: MapPoint | undefined;
   /** How far apart these are; undefined where the plan says nothing. */
   readonly residualM: number | undefined;
+  /** Contradicts the other points: the plan does not follow it. */
+  readonly outlier: boolean;
 }
 
 export function shownAnchors(world: World): ShownAnchor[] {
   const mesh = world.planMesh;
-  return [...world.tables.anchors].map(([id, { px, map }]) => {
+  return [...world.tables.anchors].map(([id, { px, map, off_m, outlier }]) => {
     const shown = mesh ? planToMap(mesh, px) : undefined;
-    return { id, at: map, shown, residualM: shown && distance(shown, map) };
+    return { id, at: map, shown, residualM: off_m ?? (shown && distance(shown, map)), outlier };
   });
 }
 

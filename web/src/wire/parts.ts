@@ -139,7 +139,7 @@ export const partSchemas = {
     seen_ms: v.nullish(number, null),
   }),
   alerts: v.object({ text: v.string(), urgent: flag(false) }),
-  anchors: v.object({ px: point, map: point }),
+  anchors: v.object({ px: point, map: point, off_m: v.optional(number), outlier: flag(false) }),
 } as const;
 
 export type PartName = keyof typeof partSchemas;
