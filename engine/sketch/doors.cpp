@@ -29,6 +29,7 @@ struct Circle {
 
 /// Points every `step` along a stroke, ends included.
 std::vector<Point2> resampled(const std::vector<Point2>& points, double step) {
+  if (points.empty()) return {};
   std::vector<Point2> out{points.front()};
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Point2 d = points[i + 1] - points[i];

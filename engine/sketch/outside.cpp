@@ -120,6 +120,7 @@ Outline find_outline(const cv::Mat& shut, double extent_px, const SketchParams& 
   cv::Mat small;
   cv::resize(shut, small, {}, scale, scale, cv::INTER_AREA);
   small = small > 0;
+  extent_px = std::min(extent_px, static_cast<double>(std::max(shut.rows, shut.cols)));  // walls may run off the sheet
   const double usual = 0.5 * params.close_gap_share * extent_px;
   double reach = usual * scale;
   cv::Mat inside = inside_by_reach(small, scale * extent_px, params, reach);
