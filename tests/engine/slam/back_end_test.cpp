@@ -152,5 +152,22 @@ TEST(SlamParams, NameTheFirstFieldOutOfRange) {
   refused([](SlamParams& p) { p.T_map_start = Pose2(Eigen::Vector2d(std::nan(""), 0), 0); }, "T_map_start");
 }
 
+TEST(SlamParams, FieldsThatBoundEachOtherMayMeetButNotCross) {
+  const auto meets = [](auto change) {
+    SlamParams at, beyond;
+    change(at, 0.0), change(beyond, 1e-6);
+    EXPECT_THAT(at.validate(), test::IsOk());
+    EXPECT_THAT(beyond.validate(), test::Fails(Errc::kInvalidArgument));
+  };
+  meets([](SlamParams& p, double more) { p.align.last_gate_m = p.align.gate_m + more; });
+  meets([](SlamParams& p, double more) { p.radar.align.last_gate_m = p.radar.align.gate_m + more; });
+  meets([](SlamParams& p, double more) { p.front_end.fair_score = p.front_end.least_score + more; });
+  meets([](SlamParams& p, double more) { p.loops.bold_sigmas = p.loops.within_sigmas + more; });
+  meets([](SlamParams& p, double more) { p.loops.most_through_bold = p.loops.most_through + more; });
+  meets([](SlamParams& p, double more) { p.graph.agrees_within = p.graph.loop_kernel + more; });
+  meets([](SlamParams& p, double more) { p.radar.nearest_m = p.radar.farthest_m + more; });
+  meets([](SlamParams& p, double more) { p.radar.good_score = p.radar.least_score - more; });
+}
+
 }  // namespace
 }  // namespace smokemap
