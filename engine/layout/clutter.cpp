@@ -14,7 +14,6 @@ constexpr double kTallestLetter = 0.06;  ///< of the long side
 constexpr double kUsualLetter = 0.018;   ///< larger ones are titles, and stand alone
 constexpr int kSmallestLetterPx = 5;
 constexpr double kLetterGap = 0.5;      ///< of the letter height: words are wider apart, walls between doors too
-constexpr int kLeastLetters = 3;        ///< light ones on a dark bar
 constexpr double kLargestBlock = 0.05;  ///< of the long side: signs; larger are headers
 constexpr double kLargestHole = 0.02;   ///< of the long side: the white part of a pictogram
 
@@ -112,16 +111,6 @@ cv::Mat without_holes(const cv::Mat& ink, double largest_px) {
   return filled;
 }
 
-/// How many pieces of the mask are at least so large.
-int pieces_of(const cv::Mat& mask, double least_px) {
-  cv::Mat labels, stats, centroids;
-  const int count = cv::connectedComponentsWithStats(mask, labels, stats, centroids, 8, CV_32S);
-  int large = 0;
-  for (int label = 1; label < count; ++label)
-    large += std::max(stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT)) >= least_px;
-  return large;
-}
-
 }  // namespace
 
 cv::Mat find_text(const cv::Mat& ink) {
@@ -152,73 +141,6 @@ cv::Mat find_text(const cv::Mat& ink) {
   return text;
 }
 
-namespace {
-
-/// Share of the circle that lies on ink.
-double inked_share(const cv::Mat& ink, const cv::Point2d& centre, double radius) {
-  int inked = 0;
-  constexpr int kSteps = 72;
-  for (int i = 0; i < kSteps; ++i) {
-    const double angle = 2 * CV_PI * i / kSteps;
-    const int x = static_cast<int>(std::lround(centre.x + radius * std::cos(angle))),
-              y = static_cast<int>(std::lround(centre.y + radius * std::sin(angle)));
-    inked += x >= 0 && y >= 0 && x < ink.cols && y < ink.rows && ink.at<std::uint8_t>(y, x) != 0;
-  }
-  return static_cast<double>(inked) / kSteps;
-}
-
-/// Dots ("you are here"), also those hardly wider than a wall: round, and standing alone as no junction of walls does.
-void add_dots(cv::Mat& blocks, const cv::Mat& ink, double wall_px, int rim) {
-  const double side = std::max(ink.rows, ink.cols);
-  const int least = static_cast<int>(std::lround(std::max(1.5 * wall_px, 0.006 * side)));
-  cv::Mat discs, labels, stats, centroids;
-  cv::morphologyEx(ink, discs, cv::MORPH_OPEN, cv::getStructuringElement(cv::MORPH_ELLIPSE, {least, least}));
-  const int count = cv::connectedComponentsWithStats(discs, labels, stats, centroids, 8, CV_32S);
-  for (int label = 1; label < count; ++label) {
-    const double width = stats.at<int>(label, cv::CC_STAT_WIDTH), height = stats.at<int>(label, cv::CC_STAT_HEIGHT);
-    const double filled = stats.at<int>(label, cv::CC_STAT_AREA) / (width * height);
-    if (std::max(width, height) > kLargestBlock * side || std::max(width, height) > 1.2 * std::min(width, height))
-      continue;
-    if (std::abs(filled - CV_PI / 4) > 0.08) continue;
-    const cv::Point2d centre(centroids.at<double>(label, 0), centroids.at<double>(label, 1));
-    const double radius = 0.5 * std::max(width, height);
-    if (inked_share(ink, centre, radius + rim) > 0.3) continue;
-    cv::circle(blocks, centre, static_cast<int>(std::lround(radius)) + rim, cv::Scalar(255), cv::FILLED);
-  }
-}
-
-}  // namespace
-
-cv::Mat find_headers(const cv::Mat& ink) {
-  const double side = std::max(ink.rows, ink.cols);
-  const int frame = static_cast<int>(std::lround(std::max(3.0, 0.006 * side)));  // thinner lines lead away from it
-  cv::Mat bars;
-  cv::morphologyEx(without_holes(ink, kTallestLetter * side), bars, cv::MORPH_OPEN,
-                   cv::getStructuringElement(cv::MORPH_RECT, {frame, frame}));
-  std::vector<std::vector<cv::Point>> outlines;
-  cv::findContours(bars, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_SIMPLE);
-  cv::Mat headers = cv::Mat::zeros(ink.size(), CV_8UC1);
-  for (const auto& outline : outlines) {
-    const cv::RotatedRect around = cv::minAreaRect(outline);
-    const double large = std::max(around.size.width, around.size.height) + 1,
-                 small = std::min(around.size.width, around.size.height) + 1;
-    if (small < 0.008 * side || large < 3 * small) continue;
-    if (cv::contourArea(outline) < 0.85 * (large - 1) * (small - 1)) continue;
-    const cv::Rect box = cv::boundingRect(outline);
-    cv::Mat shape = cv::Mat::zeros(box.size(), CV_8UC1);
-    cv::fillPoly(shape, std::vector<std::vector<cv::Point>>{outline}, cv::Scalar(255), cv::LINE_8, 0, -box.tl());
-    const int rim = 2 * static_cast<int>(std::lround(0.08 * small)) + 3;  // where frames of windows touch it
-    cv::copyMakeBorder(shape, shape, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
-    cv::erode(shape, shape, cv::getStructuringElement(cv::MORPH_RECT, {rim, rim}));
-    const cv::Mat letters = shape({1, 1, box.width, box.height}) & (ink(box) == 0);
-    const double light = static_cast<double>(cv::countNonZero(letters)) / std::max(1, cv::countNonZero(shape));
-    if (light > 0.5 || pieces_of(letters, 0.25 * small) < kLeastLetters) continue;
-    cv::drawContours(headers, std::vector<std::vector<cv::Point>>{outline}, 0, cv::Scalar(255), cv::FILLED);
-  }
-  cv::dilate(headers, headers, cv::getStructuringElement(cv::MORPH_RECT, {7, 7}));
-  return headers;
-}
-
 cv::Mat find_blocks(const cv::Mat& ink, double wall_px) {
   const double side = std::max(ink.rows, ink.cols);
   const int least = std::max(3, static_cast<int>(std::lround(std::max(1.8 * wall_px, 0.005 * side))));
@@ -240,7 +162,6 @@ cv::Mat find_blocks(const cv::Mat& ink, double wall_px) {
     cv::fillConvexPoly(blocks, hull, cv::Scalar(255));
     cv::polylines(blocks, std::vector<std::vector<cv::Point>>{hull}, true, cv::Scalar(255), 2 * rim);
   }
-  add_dots(blocks, ink, wall_px, rim);
   return blocks;
 }
 

@@ -11,11 +11,6 @@ namespace smokemap {
 /// Cost: one pass of component labelling, 10 ms a megapixel.
 cv::Mat find_text(const cv::Mat& ink);
 
-/// Dark bars with light words on them, as tables and titles have on copies without colour: oblong, filled, with at
-/// least three light spots of a letter's size, which together are the smaller part.
-/// @return CV_8UC1, 255 on bar and words
-cv::Mat find_headers(const cv::Mat& ink);
-
 /// Filled figures that are wider than walls: signs and headers on copies without colour, columns, shaded boxes.
 /// White pictograms inside are part of them.
 /// @param wall_px  thickness of the plan's walls

@@ -9,7 +9,6 @@ namespace {
 
 constexpr std::size_t kMostDrawings = 12;
 constexpr double kFarReach = 4.5;     ///< times the widest opening: how far parts of one floor may be apart
-constexpr double kWindowReach = 3.5;  ///< the same for a piece of wall inside the drawing, in line with another
 constexpr double kLeastScore = 0.02;  ///< of the best drawing's: below are frames, legends and words
 
 class Groups {
@@ -58,13 +57,12 @@ bool in_line(const InkStroke& one, const InkStroke& two, double reach_px) {
          gap_between(one.axis, two.axis) < reach_px;
 }
 
-bool alike(double one, double two) { return std::min(one, two) > 0.7 * std::max(one, two); }
-
 /// Parts of one floor far apart: the piece carries on walls of the building in two directions. (Another floor on the
 /// sheet is at most lined up in one.)
 /// @param least_px  shorter walls may line up by chance, as words do
 bool lines_up_twice(const std::vector<InkStroke>& piece, const std::vector<InkStroke>& building, double reach_px,
                     double least_px) {
+  const auto alike = [](double one, double two) { return std::min(one, two) > 0.7 * std::max(one, two); };
   std::vector<double> headings;
   for (const auto& m : piece)
     for (const auto& b : building)
@@ -99,14 +97,7 @@ Drawing take_best(std::vector<InkStroke>& walls, double thickness_px, double rea
       const auto far = [&] {
         return lines_up_twice(members_of(walls, regions[r].members), building, kFarReach * reach_px, 0.05 * side_px);
       };
-      // A post between two windows.
-      const auto inside = [&] {
-        return !grows && any_pair(regions[r], [&](const InkStroke& m, const InkStroke& b) {
-          return alike(m.thickness_px, b.thickness_px) && b.length() > 2 * b.thickness_px &&
-                 in_line(b, m, kWindowReach * reach_px);
-        });
-      };
-      if (!carries_on && !(regions[r].length > 0.1 * side_px && far()) && !inside()) {
+      if (!carries_on && !(regions[r].length > 0.1 * side_px && far())) {
         if (regions[r].length < 0.03 * side_px) continue;
         if (grows && !could_be_a_wing(walls, regions[r], thickness_px, side_px)) continue;
         if (!any_pair(regions[r],

@@ -67,7 +67,7 @@ std::optional<HiddenCorner> corner_between(const LooseEnd& one, const LooseEnd& 
 }
 
 void join_in_line(LayoutMap& map, const cv::Mat& covered, double thickness_px, double reach_px) {
-  for (const auto& gap : gaps_ahead(map, loose_ends(map), thickness_px, reach_px))
+  for (const auto& gap : gaps_ahead(map, thickness_px, reach_px))
     if (gap.corner_b >= 0 && covered_share(gap.segment, covered) > kHiddenShare)
       add_hidden(map, gap.corner_a, gap.corner_b, gap.thickness_px);
 }
@@ -104,7 +104,7 @@ void join_corners(LayoutMap& map, const cv::Mat& covered, double thickness_px, d
 }
 
 void join_to_walls(LayoutMap& map, const cv::Mat& covered, double thickness_px, double reach_px) {
-  for (const auto& gap : gaps_ahead(map, loose_ends(map), thickness_px, reach_px)) {
+  for (const auto& gap : gaps_ahead(map, thickness_px, reach_px)) {
     if (gap.wall_b < 0 || covered_share(gap.segment, covered) <= kHiddenShare) continue;
     // An earlier cut may have left the place to the second half of the wall.
     int wall = gap.wall_b;

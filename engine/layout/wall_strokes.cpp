@@ -9,10 +9,8 @@
 namespace smokemap {
 namespace {
 
-constexpr double kHollowShare = 0.3;   ///< of the long lines in pairs: from here on single lines are no walls
-constexpr double kWindowReach = 2.5;   ///< times the widest door: how far a post may be from the wall it carries on
-constexpr double kLeastOfFirst = 0.2;  ///< of the area of the first reading: smaller is only a part of that drawing
-constexpr double kClosed = 1.5;        ///< times an outline's thickness: solid, or two lines that blur made one
+constexpr double kHollowShare = 0.3;  ///< of the long lines in pairs: from here on single lines are no walls
+constexpr double kClosed = 1.5;       ///< times an outline's thickness: solid, or two lines that blur made one
 
 /// The value below which `share` of the weight lies.
 double weighted_quantile(std::vector<std::pair<double, double>> value_weight, double share) {
@@ -70,9 +68,8 @@ std::vector<InkStroke> without_echoes(const std::vector<InkStroke>& strokes) {
   std::vector<InkStroke> kept;
   for (const auto& s : strokes) {
     const bool echo = std::any_of(strokes.begin(), strokes.end(), [&](const InkStroke& o) {
-      const double body = o.thickness_px + 1;
-      return o.length() > 1.3 * s.length() && o.coverage > s.coverage - 0.2 &&
-             line_angle_between(o.axis.heading(), s.axis.heading()) < radians(35) &&
+      const double body = 0.75 * o.thickness_px + 1;
+      return o.length() > 1.3 * s.length() && line_angle_between(o.axis.heading(), s.axis.heading()) < radians(35) &&
              distance(o.axis, s.axis.a) < body && distance(o.axis, s.axis.b) < body;
     });
     if (!echo) kept.push_back(s);
@@ -172,93 +169,6 @@ void take_drawing(WallStrokes& out, std::vector<Drawing> drawings, const std::op
   }
 }
 
-struct ThicknessClasses {
-  double usual_px = 0;
-  double outer_px = 0;       ///< outer walls may be twice as thick as partitions, whichever of them are more
-  double thin_limit_px = 0;  ///< what is thinner is no wall
-};
-
-ThicknessClasses thickness_classes(const std::vector<InkStroke>& plan, const LayoutParams& params) {
-  std::vector<std::pair<double, double>> by_area;
-  for (const auto& s : plan)
-    if (s.length() >= 2.5 * s.thickness_px) by_area.emplace_back(s.thickness_px, s.length() * s.thickness_px);
-  ThicknessClasses classes;
-  classes.usual_px = weighted_quantile(by_area, 0.6);
-  classes.outer_px = std::max(classes.usual_px, weighted_quantile(by_area, 0.9));
-  classes.thin_limit_px =
-      valley(plan, 0.7 * params.thin_ratio * classes.usual_px, 1.5 * params.thin_ratio * classes.outer_px,
-             0.9 * params.thin_ratio * classes.outer_px);
-  return classes;
-}
-
-/// Lines of the main class in pairs: nothing is thicker than the outline of a wall.
-void take_hollow(WallStrokes& out, const std::vector<InkStroke>& thick, const std::vector<InkStroke>& pairs,
-                 const HollowStyle& style) {
-  std::vector<std::pair<double, double>> spacing;
-  for (const auto& p : pairs) {
-    spacing.emplace_back(p.thickness_px, p.length());
-    if (p.thickness_px < 2.5 * style.usual_px) out.walls.push_back(p);
-  }
-  for (const auto& s : thick)
-    if (s.thickness_px > kClosed * style.outline_px && !half_of_a_pair(s, pairs)) out.walls.push_back(s);
-  out.thickness_px = weighted_quantile(spacing, 0.6);
-}
-
-WallStrokes walls_of_classes(const std::vector<InkStroke>& candidates, const ThicknessClasses& classes, double side_px,
-                             const LayoutParams& params, bool may_be_hollow, const std::optional<Point2>& at) {
-  WallStrokes out;
-  out.thickness_px = classes.usual_px;
-  out.thin_limit_px = classes.thin_limit_px;
-  std::vector<InkStroke> thick;
-  for (const auto& s : candidates) {
-    if (s.thickness_px < classes.thin_limit_px)
-      out.thin.push_back(s);
-    else if (s.thickness_px < std::max(2.2 * classes.usual_px, 1.3 * classes.outer_px) && s.coverage > 0.55)
-      thick.push_back(s);
-  }
-  thick = without_blocks(without_echoes(thick), kWindowReach * params.max_opening_share * side_px);
-  const auto pairs =
-      merge_collinear(pair_hollow(thick, 0.6 * params.max_wall_share * side_px), params.merge_angle_deg, 2);
-  const HollowStyle style = hollow_style(pairs, thick, side_px);
-  out.hollow = may_be_hollow && style.share > kHollowShare;
-  out.hollow_px = style.widest_px;
-  out.outline_px = style.outline_px;
-  if (out.hollow) {
-    take_hollow(out, thick, pairs, style);
-    out.thin = candidates;
-  } else {
-    out.walls = without_ladders(dark_enough(thick), 0.015 * side_px);
-    if (style.share > 0.12) out.walls = with_pairs_joined(out.walls, pairs);
-  }
-  std::vector<std::pair<double, double>> long_ones;
-  for (const auto& s : out.walls)
-    if (s.length() >= 5 * s.thickness_px) long_ones.emplace_back(s.thickness_px, s.length() * s.thickness_px);
-  out.thickest_px = weighted_quantile(long_ones, 0.9);
-  take_drawing(out, rank_drawings(out.walls, out.thickness_px, params.max_opening_share * side_px, side_px), at);
-  return out;
-}
-
-double chosen_area(const WallStrokes& walls) {
-  double area = 0;
-  for (const auto& d : walls.drawings)
-    if (d.chosen) area += (d.high_px - d.low_px).prod();
-  return area;
-}
-
-/// Everything within the chosen drawing.
-std::vector<InkStroke> within_drawing(const std::vector<InkStroke>& strokes, const WallStrokes& walls) {
-  std::vector<InkStroke> inside;
-  for (const auto& drawing : walls.drawings)
-    if (drawing.chosen)
-      for (const auto& s : strokes) {
-        const Point2 p = s.axis.midpoint(), margin = Point2::Constant(walls.thickest_px);
-        if ((p.array() > (drawing.low_px - margin).array()).all() &&
-            (p.array() < (drawing.high_px + margin).array()).all())
-          inside.push_back(s);
-      }
-  return inside;
-}
-
 }  // namespace
 
 WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture, const LayoutParams& params,
@@ -270,20 +180,52 @@ WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture
     if (s.length() >= 0.6 * params.min_wall_share * side && s.length() >= 0.7 * s.thickness_px) candidates.push_back(s);
   candidates = without_dash_dot_lines(candidates);
   const auto regions = connected_regions(candidates, bridge, side);
-  if (regions.empty()) return {};
-  ThicknessClasses classes = thickness_classes(pick(candidates, region_at(regions, at).members), params);
-  if (least_px > 0) {
-    classes.thin_limit_px = least_px;
-    return walls_of_classes(candidates, classes, side, params, false, at);
+  WallStrokes out;
+  if (regions.empty()) return out;
+  const auto plan = pick(candidates, region_at(regions, at).members);
+
+  std::vector<std::pair<double, double>> by_area;
+  for (const auto& s : plan)
+    if (s.length() >= 2.5 * s.thickness_px) by_area.emplace_back(s.thickness_px, s.length() * s.thickness_px);
+  out.thickness_px = weighted_quantile(by_area, 0.6);
+  out.thin_limit_px = valley(plan, 0.7 * params.thin_ratio * out.thickness_px,
+                             1.1 * params.thin_ratio * out.thickness_px, 0.9 * params.thin_ratio * out.thickness_px);
+  if (least_px > 0) out.thin_limit_px = least_px;
+  std::vector<InkStroke> thick;
+  for (const auto& s : candidates) {
+    if (s.thickness_px < out.thin_limit_px)
+      out.thin.push_back(s);
+    else if (s.thickness_px < 2.2 * out.thickness_px && s.coverage > 0.55)
+      thick.push_back(s);
   }
-  // What hangs together was the frame of the sheet, or the partitions without the outer walls: once more by what lies
-  // within the drawing that it led to.
-  const auto first = walls_of_classes(candidates, classes, side, params, true, at);
-  const auto inside = within_drawing(candidates, first);
-  if (inside.empty()) return first;
-  auto second = walls_of_classes(candidates, thickness_classes(inside, params), side, params, true, at);
-  // Signs and labels may be thicker than the lines of a plan with hollow walls.
-  return chosen_area(second) >= kLeastOfFirst * chosen_area(first) ? second : first;
+  thick = without_blocks(without_echoes(thick), params.max_opening_share * side);
+
+  // Lines of the main class in pairs: nothing is thicker than the outline of a wall.
+  const auto pairs = merge_collinear(pair_hollow(thick, 0.6 * params.max_wall_share * side), params.merge_angle_deg, 2);
+  const HollowStyle style = hollow_style(pairs, thick, side);
+  out.hollow = least_px <= 0 && style.share > kHollowShare;
+  out.hollow_px = style.widest_px;
+  out.outline_px = style.outline_px;
+  if (out.hollow) {
+    std::vector<std::pair<double, double>> spacing;
+    for (const auto& p : pairs) {
+      spacing.emplace_back(p.thickness_px, p.length());
+      if (p.thickness_px < 2.5 * style.usual_px) out.walls.push_back(p);
+    }
+    for (const auto& s : thick)
+      if (s.thickness_px > kClosed * style.outline_px && !half_of_a_pair(s, pairs)) out.walls.push_back(s);
+    out.thickness_px = weighted_quantile(spacing, 0.6);
+    out.thin = candidates;
+  } else {
+    out.walls = without_ladders(dark_enough(thick), 0.015 * side);
+    if (style.share > 0.12) out.walls = with_pairs_joined(out.walls, pairs);
+  }
+  std::vector<std::pair<double, double>> long_ones;
+  for (const auto& s : out.walls)
+    if (s.length() >= 5 * s.thickness_px) long_ones.emplace_back(s.thickness_px, s.length() * s.thickness_px);
+  out.thickest_px = weighted_quantile(long_ones, 0.9);
+  take_drawing(out, rank_drawings(out.walls, out.thickness_px, params.max_opening_share * side, side), at);
+  return out;
 }
 
 }  // namespace smokemap
