@@ -13,7 +13,7 @@ if(SMOKEMAP_SANITIZE STREQUAL "address")
                          -fno-omit-frame-pointer)
   target_link_options(project_sanitizers INTERFACE -fsanitize=address,undefined)
 elseif(SMOKEMAP_SANITIZE STREQUAL "thread")
-  # Asio's fences are not understood by it; they guard nothing that is not locked as well.
+  # GCC's does not understand the fences in Asio, and says so for every one.
   target_compile_options(project_sanitizers INTERFACE -fsanitize=thread -Wno-tsan)
   target_link_options(project_sanitizers INTERFACE -fsanitize=thread)
 endif()

@@ -20,8 +20,7 @@ struct LineHolds {
 
 /// Looks for a better arrangement of all drawn lines, each axis by itself: walls that run square to it are held against
 /// all sensed faces within 4 m of where the state has them (LineChain, SensedFaces). Poses and the other axis are taken
-/// as they are. Cost: some 50 ms for 50 lines an
-/// axis.
+/// as they are. Cost: some 50 ms for 50 lines an axis.
 std::array<std::vector<LineBelief>, 2> search_lines(const std::vector<NodeView>& views,
                                                     const std::vector<bool>& use_node, const PlanModel& plan,
                                                     const GraphState& state, const LineHolds& holds,

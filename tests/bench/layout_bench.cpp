@@ -1,12 +1,11 @@
 // How well and how fast plans are read: ./run bench layout [--seeds N] [--data DIR [--plans DIR]] [--pictures DIR]
 // Random buildings drawn as evacuation plans (simulation; seeds 1, 2, ...), read flat ("clean"), turned, blurred and
-// noisy
-// ("scan"; every third one a gray copy), and photographed. With --data also pictures with known truth: NAME.json
+// noisy ("scan"; every third one a gray copy), and photographed. With --data also pictures with known truth: NAME.json
 // (walls, doors, corners, rooms in pixels; "image" may name a picture below --plans) beside NAME.png or NAME.jpg.
-// --pictures keeps what was read. Then
-// how far confidences can be trusted, and what hostile files come to. Scores as in layout_figures.hpp. Taps = what a
-// scripted person would do from the first reading to the right plan: one tap for a false wall, one drag for a missing
-// one or for a corner of the sheet that is off by over half a percent. One thread's processor time.
+// --pictures keeps what was read. Then how far confidences can be trusted, and what hostile files come to. Scores as in
+// layout_figures.hpp. Taps = what a scripted person would do from the first reading to the right plan: one tap for a
+// false wall, one drag for a missing one or for a corner of the sheet that is off by over half a percent. One thread's
+// processor time.
 #include <sys/resource.h>
 
 #include <algorithm>
