@@ -21,8 +21,9 @@ struct CleanSketch {
 /// Strokes -> raster with closed rooms: walls are drawn, ends that nearly meet are joined, small gaps closed, larger
 /// ones left open but reported; a door stroke opens the wall that it crosses or lies on (and shows as an open gap), and
 /// so does a door drawn as a leaf with its arc among the walls; notes are ignored. What four or more near and slanting
-/// lines hatch, walls or notes, is filled, and the lines are no walls. Outside is what the border of the sheet reaches once all reported gaps are thought closed; where walls would be lost to it, the openings of the
-/// outline that let it in are closed, too, and reported.
+/// lines hatch, walls or notes, is filled, and the lines are no walls. Outside is what the border of the sheet reaches
+/// once all reported gaps are thought closed; where walls would be lost to it, the openings of the outline that let it
+/// in are closed, too, and reported.
 ///
 /// @return kDegenerate if there is no wall stroke or no place inside; kTooLarge for a sheet over the limit;
 ///         kInvalidArgument for non-finite points or an empty sheet.
