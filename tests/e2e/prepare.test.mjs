@@ -61,6 +61,14 @@ describe('a plan is prepared', { timeout: 150_000 }, () => {
     const [x1, y1, x2, y2] = layout.doors[0];
     const gap = [(x1 + x2) / 2, -(y1 + y2) / 2];
     await anna.tap(gap);
+    assert.deepEqual(await anna.tooSmall(56), []);
+    await anna.page.keyboard.press('Escape');
+    await anna.page.click('[aria-label^="Gloves"]');
+    await anna.tap(gap);
+    assert.deepEqual(await anna.tooSmall(96), []);
+    await anna.page.keyboard.press('Escape');
+    await anna.page.click('[aria-label^="Gloves"]');
+    await anna.tap(gap);
     await anna.page.click('[role=dialog] >> text=Window');
     await anna.tap(gap);
     await anna.page.waitForSelector('[role=dialog] [aria-pressed=true]:has-text("Window")');

@@ -148,4 +148,20 @@ export class Tablet {
   async settled() {
     await this.page.waitForFunction(() => !document.querySelector('[data-testid=link]').textContent.includes('waiting'));
   }
+
+  /** Controls that are shown and smaller than `least` pixels. */
+  tooSmall(least) {
+    return this.page.evaluate(smallControls, least);
+  }
+}
+
+/** Runs in the page. A label around an input counts as the input. */
+function smallControls(least) {
+  const found = [];
+  for (const control of document.querySelectorAll('button, input:not([hidden]), select, textarea, a[href]')) {
+    const { width, height } = (control.closest('label') ?? control).getBoundingClientRect();
+    if (width === 0 && height === 0) continue;
+    if (Math.min(width, height) < least - 0.5) found.push(`${control.outerHTML.slice(0, 120)} ${Math.round(width)} x ${Math.round(height)}`);
+  }
+  return found;
 }
