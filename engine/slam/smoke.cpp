@@ -1,6 +1,7 @@
 #include "slam/smoke.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "slam/radar_points.hpp"
@@ -10,24 +11,105 @@ namespace {
 
 constexpr double kBehind_m = 0.60;     ///< an echo this far behind the lidar's is another surface
 constexpr double kSame_m = 0.35;       ///< an echo this near to the lidar's confirms it
+constexpr double kLoneSame_m = 0.15;   ///< the same for an echo that lies on no surface
 constexpr double kSector_rad = 0.175;  ///< half width
 constexpr double kSmokeShare = 0.60;
 constexpr double kNear_m = 8.0;  ///< a wall that a lidar shows in clear air
 constexpr int kLeastExpected = 20;
 
+constexpr int kNeighbours = 5;        ///< beams on either side in which a surface goes on
+constexpr int kLeastBeside = 5;       ///< of them, at about the same range ...
+constexpr int kLeastInLine = 5;       ///< ... or pairs of them in line with the echo
+constexpr double kBeside_m = 0.035;   ///< three sigmas of a lidar
+constexpr double kBesideSlope = 1.2;  ///< of a surface met at 40 degrees
+constexpr double kLoneReach_m = 3.0;  ///< smoke rarely answers from farther away: there it takes the radar's word too
+
 enum class Opinion { kNone, kWall, kSmoke };
 
-/// What the radar's echoes near one bearing say about a lidar range.
-Opinion ask(const std::vector<std::vector<double>>& ranges_by_bearing, std::size_t bearing, double range_m) {
-  const std::size_t count = ranges_by_bearing.size();
-  bool behind = false;
-  for (const std::size_t b : {(bearing + count - 1) % count, bearing, (bearing + 1) % count})
-    for (const double echo : ranges_by_bearing[b]) {
+/// Radar echoes by bearing, as seen from the lidar.
+class RadarRanges {
+ public:
+  RadarRanges(const LaserScan& scan, const RadarSweep& sweep, const Pose2& T_now_then, const RadarParams& params) {
+    const Pose2 T_laser_then = scan.T_robot_laser.inverse() * T_now_then;
+    for (const RadarEcho& echo : strongest_echoes(sweep, {}, params)) {
+      const Point2 p = T_laser_then * echo.p;
+      ranges_[bearing_of(std::atan2(p.y(), p.x()))].push_back(p.norm());
+    }
+  }
+  /// What the echoes near one bearing say about a lidar range.
+  Opinion ask(double angle_rad, double range_m) const {
+    bool behind = false;
+    for (const double echo : around(angle_rad)) {
       if (std::abs(echo - range_m) < kSame_m) return Opinion::kWall;
       behind = behind || echo > range_m + kBehind_m;
     }
-  return behind ? Opinion::kSmoke : Opinion::kNone;
-}
+    return behind ? Opinion::kSmoke : Opinion::kNone;
+  }
+  bool confirms(double angle_rad, double range_m) const {
+    const std::vector<double> echoes = around(angle_rad);
+    return std::any_of(echoes.begin(), echoes.end(),
+                       [&](double echo) { return std::abs(echo - range_m) < kLoneSame_m; });
+  }
+  bool near_wall(double angle_rad) const {
+    const auto& here = ranges_[bearing_of(angle_rad)];
+    return std::any_of(here.begin(), here.end(), [](double echo) { return echo < kNear_m; });
+  }
+
+ private:
+  static constexpr std::size_t kBearings = 180;
+  static std::size_t bearing_of(double angle_rad) {
+    return static_cast<std::size_t>((wrap_angle(angle_rad) + kPi) / (2 * kPi) * kBearings) % kBearings;
+  }
+  std::vector<double> around(double angle_rad) const {
+    const std::size_t bearing = bearing_of(angle_rad);
+    std::vector<double> echoes;
+    for (const std::size_t b : {(bearing + kBearings - 1) % kBearings, bearing, (bearing + 1) % kBearings})
+      echoes.insert(echoes.end(), ranges_[b].begin(), ranges_[b].end());
+    return echoes;
+  }
+  std::array<std::vector<double>, kBearings> ranges_;
+};
+
+/// Ranges of the beams that hit, by index; 0 for others and beyond the ends of a scan that is no full turn.
+class HitRanges {
+ public:
+  HitRanges(const LaserScan& scan, const BeamConvention& convention)
+      : step_rad_(scan.angle_increment_rad), beams_(static_cast<std::ptrdiff_t>(distinct_beams(scan))) {
+    ranges_.reserve(scan.ranges_m.size());
+    for (const float range : scan.ranges_m)
+      ranges_.push_back(classify(range, scan, convention) == BeamKind::kHit ? static_cast<double>(range) : 0.0);
+    full_turn_ = static_cast<double>(beams_) * std::abs(step_rad_) > 2 * kPi - 1.5 * std::abs(step_rad_);
+  }
+  double at(std::ptrdiff_t i) const {
+    if (full_turn_) i = (i % beams_ + beams_) % beams_;
+    return i >= 0 && i < beams_ ? ranges_[static_cast<std::size_t>(i)] : 0.0;
+  }
+  /// Does no surface go through this hit? The beams beside it end neither at about its range nor in line with it: on a
+  /// straight wall 1/r of three beams at equal angles fulfils 1/a + 1/c = 2 cos(step) / b.
+  bool is_lone(std::ptrdiff_t i) const {
+    const double range = at(i);
+    int beside = 0, in_line = 0;
+    for (int k = 1; k <= kNeighbours; ++k) {
+      const double before = at(i - k), after = at(i + k), cosine = 2 * std::cos(k * step_rad_);
+      const double slope_m = kBesideSlope * range * k * std::abs(step_rad_);
+      for (const double other : {before, after})
+        beside += other > 0 && std::abs(other - range) <= std::max(kBeside_m, slope_m);
+      const auto agrees = [&](double inverse) {
+        return inverse > 0 && std::abs(1 / inverse - range) < std::max(kBeside_m, 0.02 * range);
+      };
+      if (before > 0 && after > 0) in_line += agrees((1 / before + 1 / after) / cosine);
+      if (const double next = at(i - 2 * k); before > 0 && next > 0) in_line += agrees(cosine / before - 1 / next);
+      if (const double next = at(i + 2 * k); after > 0 && next > 0) in_line += agrees(cosine / after - 1 / next);
+    }
+    return beside < kLeastBeside && in_line < kLeastInLine;
+  }
+
+ private:
+  double step_rad_;
+  std::ptrdiff_t beams_;
+  bool full_turn_ = false;
+  std::vector<double> ranges_;
+};
 
 }  // namespace
 
@@ -35,33 +117,28 @@ SmokeView look_for_smoke(const LaserScan& scan, const BeamConvention& convention
                          const Pose2& T_now_then, const RadarParams& params) {
   const std::size_t beams = scan.ranges_m.size();
   SmokeView view{std::vector<bool>(beams, false), 0};
-  constexpr std::size_t kBearings = 180;
-  std::vector<std::vector<double>> ranges_by_bearing(kBearings);
-  const Pose2 T_laser_then = scan.T_robot_laser.inverse() * T_now_then;
-  for (const RadarEcho& echo : strongest_echoes(sweep, {}, params)) {
-    const Point2 p = T_laser_then * echo.p;
-    const double share = (std::atan2(p.y(), p.x()) + kPi) / (2 * kPi);
-    ranges_by_bearing[static_cast<std::size_t>(share * kBearings) % kBearings].push_back(p.norm());
-  }
+  const RadarRanges radar(scan, sweep, T_now_then, params);
+  const HitRanges hits(scan, convention);
   std::vector<Opinion> opinions(beams, Opinion::kNone);
+  std::vector<bool> lone(beams, false);
   int expected = 0, shown = 0;
   for (std::size_t i = 0; i < beams; ++i) {
-    const double range = static_cast<double>(scan.ranges_m[i]);
-    const bool hit = classify(scan.ranges_m[i], scan, convention) == BeamKind::kHit;
-    if (hit && range < params.nearest_m) continue;
-    const double angle = wrap_angle(scan.angle_min_rad + static_cast<double>(i) * scan.angle_increment_rad);
-    const std::size_t bearing = static_cast<std::size_t>((angle + kPi) / (2 * kPi) * kBearings) % kBearings;
-    if (hit) opinions[i] = ask(ranges_by_bearing, bearing, range);
-    const bool near_wall = std::any_of(ranges_by_bearing[bearing].begin(), ranges_by_bearing[bearing].end(),
-                                       [](double echo) { return echo < kNear_m; });
-    if (hit ? opinions[i] == Opinion::kNone : !near_wall) continue;
+    const double range = hits.at(static_cast<std::ptrdiff_t>(i));
+    const double angle = scan.angle_min_rad + static_cast<double>(i) * scan.angle_increment_rad;
+    const bool hit = range > 0, too_near = range < params.nearest_m;  // for the radar
+    if (hit && !too_near) opinions[i] = radar.ask(angle, range);
+    lone[i] = hit && hits.is_lone(static_cast<std::ptrdiff_t>(i)) && (too_near || !radar.confirms(angle, range)) &&
+              (range < kLoneReach_m || opinions[i] == Opinion::kSmoke);
+    if (hit && too_near && !lone[i]) continue;
+    if (hit && !too_near ? opinions[i] == Opinion::kNone : !radar.near_wall(angle)) continue;
     ++expected;
-    shown += opinions[i] == Opinion::kWall;
+    shown += opinions[i] == Opinion::kWall && !lone[i];
   }
   if (expected >= kLeastExpected) view.share = 1 - static_cast<double>(shown) / expected;
   const auto half = std::max<std::ptrdiff_t>(1, std::lround(kSector_rad / std::abs(scan.angle_increment_rad)));
   for (std::size_t i = 0; i < beams; ++i) {
-    if (opinions[i] != Opinion::kSmoke) continue;
+    view.beams[i] = lone[i];
+    if (lone[i] || opinions[i] != Opinion::kSmoke) continue;
     int says_smoke = 0, says_wall = 0;
     for (std::ptrdiff_t j = static_cast<std::ptrdiff_t>(i) - half; j <= static_cast<std::ptrdiff_t>(i) + half; ++j) {
       if (j < 0 || j >= static_cast<std::ptrdiff_t>(beams)) continue;

@@ -15,14 +15,19 @@ struct SmokeView {
   double share = 0;         ///< of the beams that should have shown a wall the radar sees near, those that did not
 };
 
-/// Lidar beams that end in smoke: the radar, whom smoke does not hinder, sees nothing at the lidar's range but
-/// something well behind it, and so it is for most beams around. Such an echo is neither a wall nor proof of free
-/// space.
+/// Lidar beams that end in smoke. Such an echo is neither a wall nor proof of free space. Two signs, either is enough:
+///  * It lies on no surface: the beams beside it end elsewhere, and the radar has no echo there. Smoke answers from a
+///    depth, each beam from another one; walls, jambs and furniture go on for some beams. Right in front of the robot,
+///    where most echoes of smoke come from and the radar is blind, this alone decides.
+///  * The radar, whom smoke does not hinder, sees nothing at the lidar's range but something well behind it, and so it
+///    is for most beams around: radars miss weak targets now and then, a single disagreement decides nothing, the share
+///    within a sector of +-10 degrees does.
+/// The share over the whole scan says how much the lidar is still worth.
 ///
-/// Radars miss weak targets now and then: a single disagreement decides nothing, the share within a sector of +-10
-/// degrees does. The share over the whole scan says how much the lidar is still worth.
+/// Measured on the simulated building (./run bench smoke --beams): of the echoes of smoke .5 to 5 % are taken for
+/// walls, of those of walls nearer than 3 m under .5 % for smoke (13 % of those within 0.5 m in the thickest).
 /// @param T_now_then  pose of the robot at the sweep, seen from the robot at the scan
-/// Source: the lidar-radar ratio of Fritsche et al. (2016), per beam instead of per scan.
+/// Source: the lidar-radar ratio of Fritsche et al. (2016), per beam instead of per scan; the first sign is our own.
 SmokeView look_for_smoke(const LaserScan& scan, const BeamConvention& convention, const RadarSweep& sweep,
                          const Pose2& T_now_then, const RadarParams& params);
 

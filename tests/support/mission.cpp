@@ -27,6 +27,7 @@ class Mission {
   Mission(const DemoScenario& demo, const MissionParams& params)
       : demo_(demo),
         params_(params),
+        world_(demo.world),
         layout_(params.layout.value_or(demo.truth.layout)),
         robot_(demo_robot_params(demo), demo.T_world_start),
         core_(FleetParams{}, std::make_shared<DirectDrive>(robot_)) {}
@@ -53,13 +54,15 @@ class Mission {
   }
 
   void step() {
-    const RobotOutput out = robot_.step(demo_.world);
+    const RobotOutput out = robot_.step(world_);
     for (const Odometry& odometry : out.odometry) feed(odometry);
     for (const RadarSweep& sweep : out.sweeps) feed(sweep);
     for (const LaserScan& scan : out.scans) feed(scan);
     ++steps_;
     if (steps_ % 10 == 0) core_.tick(robot_.now());
+    if (steps_ % 50 == 0) way_.push_back(robot_.true_pose().translation());
     if (steps_ % 100 == 0) {
+      if (params_.smoke_spreads) world_.smoke.advance(1.0);
       if (mapper_.optimize()) merge();
       if (params_.every_second) params_.every_second(core_, static_cast<double>(steps_) * 0.01);
     }
@@ -114,6 +117,9 @@ class Mission {
     MissionResult r;
     r.time_s = time_s;
     r.merged = snapshot.merged;
+    r.sensed = snapshot.sensed;
+    r.way_world = way_;
+    r.smoke = world_.smoke;
     r.corners = static_cast<int>(before_.size());
     r.before_median_m = median(before_);
     r.after_median_m = median(corner_errors(false));
@@ -134,12 +140,14 @@ class Mission {
 
   const DemoScenario& demo_;
   const MissionParams& params_;
+  SimulatedWorld world_;
   LayoutMap layout_;
   SimulatedRobot robot_;
   Mapper mapper_;
   Merger merger_;
   SessionCore core_;
   std::vector<double> before_;
+  std::vector<Point2> way_;
   long steps_ = 0;
   bool asked_ = false;
 };

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "grids/occupancy_grid.hpp"
 #include "maps/layout_map.hpp"
 #include "session/mapper.hpp"
 #include "session/session_core.hpp"
@@ -16,6 +17,7 @@ namespace smokemap::test {
 struct MissionParams {
   double explore_s = 20;            ///< before the goal is given
   double limit_s = 300;             ///< simulated
+  bool smoke_spreads = false;       ///< as in the demo that is served; false: it stays as it is
   std::optional<LayoutMap> layout;  ///< as some reader gave it; none = what a perfect reader would give
   std::function<void(const SessionCore&, double t_s)> every_second;
 };
@@ -32,6 +34,9 @@ struct MissionResult {
   int bumps = 0;
   double pose_error_m = 0;  ///< of the robot on the map, at the end
   std::shared_ptr<const MergedMap> merged;
+  std::shared_ptr<const OccupancyGrid> sensed;
+  std::vector<Point2> way_world;  ///< where the robot truly was, twice a second
+  SmokeField smoke;               ///< at the end
 };
 
 /// The demo without threads, network or browser, in simulated time: the robot explores, then a goal on the plan in a
