@@ -54,7 +54,10 @@ class Mission {
   }
 
   void step() {
+    const int bumps_before = robot_.drive().bumps();
     const RobotOutput out = robot_.step(world_);
+    if (robot_.drive().bumps() > bumps_before)
+      bumped_.push_back({static_cast<double>(steps_) * 0.01, robot_.true_pose()});
     for (const Odometry& odometry : out.odometry) feed(odometry);
     for (const RadarSweep& sweep : out.sweeps) feed(sweep);
     for (const LaserScan& scan : out.scans) feed(scan);
@@ -127,6 +130,7 @@ class Mission {
     r.seen = static_cast<int>(seen.size());
     r.after_seen_median_m = median(seen);
     r.bumps = robot_.drive().bumps();
+    r.bumped = bumped_;
     const Pose2 T_map_true = demo_.T_world_start.inverse() * robot_.true_pose();
     if (!snapshot.robots.empty())
       r.pose_error_m = (snapshot.robots.front().T_map_robot.translation() - T_map_true.translation()).norm();
@@ -148,6 +152,7 @@ class Mission {
   SessionCore core_;
   std::vector<double> before_;
   std::vector<Point2> way_;
+  std::vector<Bump> bumped_;
   long steps_ = 0;
   bool asked_ = false;
 };

@@ -22,6 +22,12 @@ struct MissionParams {
   std::function<void(const SessionCore&, double t_s)> every_second;
 };
 
+/// The robot touched something.
+struct Bump {
+  double time_s = 0;
+  Pose2 T_world_robot;
+};
+
 struct MissionResult {
   GoalState goal = GoalState::kQueued;
   std::string reason;
@@ -32,6 +38,7 @@ struct MissionResult {
   double after_seen_median_m = 0;  ///< only corners that were seen
   int seen = 0, corners = 0;
   int bumps = 0;
+  std::vector<Bump> bumped;
   double pose_error_m = 0;  ///< of the robot on the map, at the end
   std::shared_ptr<const MergedMap> merged;
   std::shared_ptr<const OccupancyGrid> sensed;
