@@ -53,7 +53,10 @@ async function watchTheFirstMinute(probe, tablet) {
   const inState = (...states) => walls().filter(({ state }) => states.includes(state)).length;
   await probe.until(() => inState('confirmed', 'moved') > 0, 60_000);
   said('the first wall is confirmed or moved');
+  const [from, { map, rest }] = [Date.now(), { ...tablet.received }];
   await new Promise((resolve) => setTimeout(resolve, Number(options.seconds) * 1000 - (Date.now() - begun)));
+  const perSecond = (bytes) => (bytes / (Date.now() - from)).toFixed(1);
+  said(`live map ${perSecond(tablet.received.map - map)} kB/s, everything else ${perSecond(tablet.received.rest - rest)} kB/s`);
   said(['confirmed', 'moved', 'missing', 'new', 'unseen'].map((state) => `${inState(state)} ${state}`).join(', '));
 }
 

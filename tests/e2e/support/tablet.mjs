@@ -16,6 +16,8 @@ export class Tablet {
   #context;
   page;
   errors = [];
+  /** Bytes that came over the live link. */
+  received = { map: 0, rest: 0 };
 
   /** @param options of the browser: size, colours. */
   static async open(browser, url, options = {}) {
@@ -24,6 +26,7 @@ export class Tablet {
     tablet.page = await tablet.#context.newPage();
     tablet.page.setDefaultTimeout(kPatientMs);
     tablet.page.on('pageerror', (error) => tablet.errors.push(String(error)));
+    tablet.page.on('websocket', (socket) => socket.on('framereceived', ({ payload }) => (tablet.received[typeof payload === 'string' ? 'rest' : 'map'] += payload.length)));
     await tablet.page.goto(url);
     await tablet.page.waitForSelector('[data-mode=operate]');
     await tablet.link('Live');
