@@ -15,10 +15,12 @@ constexpr int kCoarse_cells = 44;
 constexpr int kFine_cells = 72;
 constexpr double kCoarseSlope_cells = 3;
 constexpr double kFineSlope_cells = 4;
-constexpr int kRefined = 3;            ///< of the best hypotheses, laid again as their pairs ask
-constexpr double kWarpWeight = 0.5;    ///< of the likeness after bending beside the energy of the structure
-constexpr double kCoverWeight = 0.35;  ///< of the share of b that has a partner
-constexpr double kScalePrior = 3;      ///< weight of the former scale against what the pairs say, in their total weight
+constexpr int kRefined = 3;                 ///< of the best hypotheses, laid again as their pairs ask
+constexpr double kWarpWeight = 0.5;         ///< of the likeness after bending beside the energy of the structure
+constexpr double kCoverWeight = 0.35;       ///< of the share of b that has a partner
+constexpr double kMatchedWeight = 0.18;     ///< of the share of a that has a partner
+constexpr double kSizeSpreadWeight = 0.09;  ///< of how unevenly rooms were drawn larger or smaller than they are
+constexpr double kScalePrior = 3;  ///< weight of the former scale against what the pairs say, in their total weight
 constexpr double kMostRescaling = 1.6;
 
 Eigen::Matrix2d turn_of(const Eigen::Matrix2d& linear) {
@@ -65,12 +67,11 @@ std::vector<Hypothesis> HypothesisFinder::find(const std::vector<Pin>& pins, con
 FitEvidence HypothesisFinder::weigh_fit(const std::vector<Hypothesis>& all) const {
   const Hypothesis& best = all.front();
   FitEvidence fit;
-  double matched = 0, likeness = 0;
+  const double matched = this->matched(best.structure);
+  double likeness = 0;
   for (int i = 0; i < graph_a_.size(); ++i)
-    if (const int j = best.structure.partner[static_cast<size_t>(i)]; j >= 0) {
-      matched += graph_a_.importance(i);
+    if (const int j = best.structure.partner[static_cast<size_t>(i)]; j >= 0)
       likeness += graph_a_.importance(i) * best.scores.likeness(i, j);
-    }
   fit.likeness = matched > 0 ? likeness / matched : 0;
   fit.explained = matched * covered(best.structure);
   // The wrong side of the sheet: the mirror image, or the drawing as it is if the answer is mirrored itself.
@@ -112,7 +113,8 @@ Hypothesis HypothesisFinder::solve(const MapAlignment& alignment, const std::vec
   problem.forced = rules.forced, problem.forbidden = rules.forbidden;
   problem.many_to_one = params_.allow_many_to_many;
   result.structure = match_structure(problem);
-  result.score = result.structure.energy + kWarpWeight * result.warp.score + kCoverWeight * covered(result.structure);
+  result.score = result.structure.energy + kWarpWeight * result.warp.score + kCoverWeight * covered(result.structure) +
+                 kMatchedWeight * matched(result.structure) - kSizeSpreadWeight * size_spread(result.structure);
   return result;
 }
 
@@ -123,6 +125,31 @@ double HypothesisFinder::covered(const StructureMatch& structure) const {
     if (std::find(structure.partner.begin(), structure.partner.end(), j) != structure.partner.end())
       sum += graph_b_.importance(j);
   return sum;
+}
+
+/// Share of a, by importance, that goes to some region of b.
+double HypothesisFinder::matched(const StructureMatch& structure) const {
+  double sum = 0;
+  for (int i = 0; i < graph_a_.size(); ++i)
+    if (structure.partner[static_cast<size_t>(i)] >= 0) sum += graph_a_.importance(i);
+  return sum;
+}
+
+/// Standard deviation, by importance, of the logarithm of how much larger partners are than what was drawn of them: a
+/// drawing has one scale, and who mistakes rooms for others finds some far too large beside some far too small.
+double HypothesisFinder::size_spread(const StructureMatch& structure) const {
+  Eigen::VectorXd drawn = Eigen::VectorXd::Zero(graph_b_.size());  // area of all that goes to one region
+  for (int i = 0; i < graph_a_.size(); ++i)
+    if (const int j = structure.partner[static_cast<size_t>(i)]; j >= 0) drawn(j) += graph_a_.area(i);
+  double total = 0, sum = 0, squares = 0;
+  for (int i = 0; i < graph_a_.size(); ++i) {
+    const int j = structure.partner[static_cast<size_t>(i)];
+    if (j < 0) continue;
+    const double larger = std::log(graph_b_.area(j) / drawn(j)), weight = graph_a_.importance(i);
+    total += weight, sum += weight * larger, squares += weight * larger * larger;
+  }
+  if (total <= 0) return 1;
+  return std::sqrt(std::max(0.0, squares / total - sum * sum / (total * total)));
 }
 
 /// Turn kept; scale along both wall directions of b and shift such that partners' middles meet, weighted.

@@ -30,6 +30,7 @@ constexpr double kDoubtfulMargin = 0.08;
 constexpr double kDoubtfulConfidence = 0.6;
 constexpr double kUnknownFit = 0.5;    ///< the published methods do not ask
 constexpr double kMostInDoubt = 0.75;  ///< nothing is shown as sure while the whole is doubtful
+constexpr double kLeastSaid = 0.1;     ///< what is wrong nine times in ten is no pair
 constexpr double kPinned = 0.97;       ///< a tap may miss the room that was meant
 
 std::optional<int> region_near(const Segmentation& map, const Point2& p_px) {
@@ -149,6 +150,7 @@ void finish(const Segmentation& a, const PairRules& rules, const std::vector<Reg
   const auto is_bound = [&](const RegionPair& pair) { return rules.forced(pair.label_a - 1, pair.label_b - 1) != 0; };
   for (RegionPair& pair : matching.pairs)
     pair.confidence = is_bound(pair) ? kPinned : confidence_of(weigh_pair(pair, all));
+  std::erase_if(matching.pairs, [&](const RegionPair& pair) { return pair.confidence < kLeastSaid; });
   for (RegionPair& pair : matching.runner_up)
     pair.confidence = (1 - matching.margin) * 0.5;  // it is right at most when the best is wrong
   matching.doubtful = matching.margin < kDoubtfulMargin / kClearMargin ||

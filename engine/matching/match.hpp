@@ -13,7 +13,8 @@ namespace smokemap {
 /// Finds which regions of map a (a sketch, a layout, a robot's partial map) and of map b are the same places.
 ///
 /// Neither scale nor heading nor completeness is assumed. Pins bind the regions they lie in; confirmed and rejected
-/// verdicts are kept exactly. What cannot be told is left unmatched, and every pair says how sure it is.
+/// verdicts are kept exactly. What cannot be told is left unmatched, and every pair says how sure it
+/// is; one that is wrong nine times in ten is not said at all.
 ///
 /// @param pins      p_a_px on a, p_b_px on b; pins off free space bind the nearest region within 10 px, else nothing
 /// @param verdicts  confirmed pairs come back confirmed with confidence 1; rejected ones come back rejected and are
