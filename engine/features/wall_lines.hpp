@@ -39,6 +39,6 @@ struct WallLineParams {
 /// Cost: O(n log n) with a grid of neighbours; about 3 ms for 2000 hits. Deterministic.
 /// Method: local directions by principal components, lines grown from the hit with most aligned neighbours, total least
 /// squares, cut at gaps. The two faces of a thin wall stay apart: they are seen from different sides.
-std::vector<WallLine> find_wall_lines(const std::vector<PosedHit>& hits, const WallLineParams& params = {});
+std::vector<WallLine> find_wall_lines(const std::vector<PosedHit>& all, const WallLineParams& params = {});
 
 }  // namespace smokemap

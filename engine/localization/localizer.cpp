@@ -50,7 +50,7 @@ class Localizer::Impl {
   Impl(const LocalizerParams& p, std::uint64_t seed) : params(p), random(random_stream(seed, 0x10ca1)) {}
 
   Particle anywhere();
-  void move(const Pose2& T_before_after);
+  void move(const Pose2& step);
   void weigh(const std::vector<Point2>& hits);
   void resample();
   int wanted_particles() const;

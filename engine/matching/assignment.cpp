@@ -13,9 +13,9 @@ class PathSolver {
   explicit PathSolver(const Eigen::MatrixXd& cost)
       : cost_(cost),
         size_(static_cast<int>(cost.rows())),
-        row_price_(size_ + 1, 0),
-        column_price_(size_ + 1, 0),
-        row_at_(size_ + 1, 0) {}
+        row_price_(static_cast<std::size_t>(size_) + 1, 0),
+        column_price_(static_cast<std::size_t>(size_) + 1, 0),
+        row_at_(static_cast<std::size_t>(size_) + 1, 0) {}
 
   std::vector<int> solve() {
     for (int row = 1; row <= size_; ++row) enter(row);

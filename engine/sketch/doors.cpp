@@ -63,7 +63,7 @@ std::vector<std::vector<Point2>> parted_at_corners(const std::vector<Point2>& po
 std::optional<Circle> fit_circle(const std::vector<Point2>& points) {
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d rhs = Eigen::Vector3d::Zero();
-  const Point2 origin = points.front();  // for the sake of digits
+  const Point2& origin = points.front();  // for the sake of digits
   for (const Point2& point : points) {
     const Point2 p = point - origin;
     const Eigen::Vector3d row(2 * p.x(), 2 * p.y(), 1);

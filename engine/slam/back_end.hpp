@@ -40,7 +40,7 @@ class BackEnd {
   GraphUpdate update(bool moved) const;
 
  private:
-  void append(NewNode node);
+  void append(NewNode added);
   bool search_due(int node);
   bool relocate(int node);
   void tie_piece(const PoseEdge& found);

@@ -98,8 +98,8 @@ class HitRanges {
         return inverse > 0 && std::abs(1 / inverse - range) < std::max(kBeside_m, 0.02 * range);
       };
       if (before > 0 && after > 0) in_line += agrees((1 / before + 1 / after) / cosine);
-      if (const double next = at(i - 2 * k); before > 0 && next > 0) in_line += agrees(cosine / before - 1 / next);
-      if (const double next = at(i + 2 * k); after > 0 && next > 0) in_line += agrees(cosine / after - 1 / next);
+      if (const double next = at(i - k - k); before > 0 && next > 0) in_line += agrees(cosine / before - 1 / next);
+      if (const double next = at(i + k + k); after > 0 && next > 0) in_line += agrees(cosine / after - 1 / next);
     }
     return beside < kLeastBeside && in_line < kLeastInLine;
   }

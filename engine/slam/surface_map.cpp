@@ -62,7 +62,8 @@ bool SurfaceMap::nearest(const Point2& p, const Point2& normal, double gate_m, d
   const Average* nearest = nullptr;
   const auto look = [&](int cx, int cy) {
     if (cx < 0 || cy < 0 || cx >= side_ || cy >= side_) return;
-    for (std::int32_t at = heads_[static_cast<std::size_t>(cy * side_ + cx)]; at >= 0;) {
+    const int cell = cy * side_ + cx;
+    for (std::int32_t at = heads_[static_cast<std::size_t>(cell)]; at >= 0;) {
       const Average& a = cells_[static_cast<std::size_t>(at)];
       at = a.next;
       const double squared = (a.p - p).squaredNorm();
