@@ -73,8 +73,10 @@ class AutoCompleteGraph {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A pose at any time from the corrected nodes: the correction of the node before and after, blended, applied to
-/// `T_slam_robot` (the uncorrected pose at that time). `graph` and `merged.trajectory` belong together.
-Pose2 corrected_pose(const PoseGraph& graph, const MergedMap& merged, Stamp stamp, const Pose2& T_slam_robot);
+/// A robot's pose at any time from its corrected nodes: the correction of the one before and the one after, blended,
+/// applied to `T_slam_robot` (its uncorrected pose at that time). As it is for a robot without nodes. `graph` and
+/// `merged.trajectory` belong together; a robot's nodes come in the order of their stamps. Cost: nodes.
+Pose2 corrected_pose(const PoseGraph& graph, const MergedMap& merged, const std::string& robot, Stamp stamp,
+                     const Pose2& T_slam_robot);
 
 }  // namespace smokemap

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grids/ray.hpp"
+
 namespace smokemap {
 namespace {
 
 constexpr double kAcross_m = 0.05, kAlong_m = 0.10;
 constexpr double kSquare = 0.26;     ///< sine of how far a face may be from square to the direction
+constexpr double kNearest_m = 0.1;   ///< to the sensor
 constexpr double kBefore_m = 0.15;   ///< of a beam's end: free for sure
 constexpr double kBeamReach_m = 12;  ///< beams are too far apart beyond
 constexpr int kMost_cells = 40'000'000;
@@ -44,13 +47,13 @@ SensedFaces::SensedFaces(const std::vector<NodeView>& views, const std::vector<b
     for (const ScanPiece& piece : views[node].pieces) {
       const Point2 a = pose * piece.segment.a, b = pose * piece.segment.b, u = (b - a).normalized();
       if (std::abs(u.dot(across_)) > kSquare) continue;
-      Layer& layer = across_.dot(pose.translation() - a) > 0 ? from_above_ : from_below_;
-      for (double s = 0; s < (b - a).norm(); s += 0.5 * kAlong_m) count(layer, a + s * u, stamp);
+      count(across_.dot(pose.translation() - a) > 0 ? from_above_ : from_below_, a, b, stamp);
     }
     for (const ScanRay& ray : views[node].rays) {
+      const double free_m = std::min(kBeamReach_m, ray.range_m - kBefore_m);
       const Point2 way = pose.rotation() * ray.way;
-      for (double s = 0.1; s < std::min(kBeamReach_m, ray.range_m - kBefore_m); s += kAlong_m)
-        count(through_, pose.translation() + s * way, stamp);
+      if (free_m > kNearest_m)
+        count(through_, pose.translation() + kNearest_m * way, pose.translation() + free_m * way, stamp);
     }
   }
 }
@@ -63,13 +66,22 @@ int SensedFaces::column(double along_m) const {
   return static_cast<int>(std::floor((along_m - low_along_m_) / kAlong_m));
 }
 
-void SensedFaces::count(Layer& layer, const Point2& p, std::uint32_t node) {
-  const int r = row(across_.dot(p)), c = column(along_.dot(p));
-  if (r < 0 || c < 0 || r >= rows_ || c >= columns_) return;
-  const auto i = static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c);
-  if (layer.last[i] == node || layer.nodes[i] == 255) return;
-  layer.last[i] = node;
-  ++layer.nodes[i];
+/// Every cell on the way from a to b, for this node once. In units of cells, which are not square, the way is as
+/// straight.
+void SensedFaces::count(Layer& layer, const Point2& a, const Point2& b, std::uint32_t node) {
+  const auto in_cells = [&](const Point2& p) {
+    return Point2((across_.dot(p) - low_across_m_) / kAcross_m, (along_.dot(p) - low_along_m_) / kAlong_m);
+  };
+  const GridFrame cells{1, Point2::Zero(), rows_, columns_};
+  walk_ray(cells, in_cells(a), in_cells(b), [&](Cell cell) {
+    if (!cells.contains(cell)) return true;
+    const auto i =
+        static_cast<std::size_t>(cell.x) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(cell.y);
+    if (layer.last[i] == node || layer.nodes[i] == 255) return true;
+    layer.last[i] = node;
+    ++layer.nodes[i];
+    return true;
+  });
 }
 
 /// In this cell or one beside it, across the wall.

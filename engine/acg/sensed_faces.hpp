@@ -13,7 +13,7 @@ namespace smokemap {
 class SensedFaces {
  public:
   /// @param heading_rad  in map, of the direction in which these walls are told apart
-  /// Cost: beams x range / 10 cm.
+  /// Cost: beams x cells on their way, some 25 per metre; no cell that a beam crosses is left out.
   SensedFaces(const std::vector<NodeView>& views, const std::vector<bool>& use_node, const GraphState& state,
               double heading_rad);
 
@@ -28,7 +28,7 @@ class SensedFaces {
     std::vector<Count> nodes;
     std::vector<std::uint32_t> last;  ///< node that counted last, plus 1
   };
-  void count(Layer& layer, const Point2& p_map, std::uint32_t node);
+  void count(Layer& layer, const Point2& a_map, const Point2& b_map, std::uint32_t node);
   int column(double along_m) const;
   int row(double across_m) const;
   Count seen(const Layer& layer, double across_m, int column) const;

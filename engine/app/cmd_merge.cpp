@@ -151,7 +151,9 @@ Result<Ok> write_answers(const MergeArguments& arguments, const Merging& work) {
   if (const auto written = write_file(arguments.output, document); !written) return written;
   if (!arguments.trajectory.empty()) {
     Trajectory corrected = work.slam_trajectory;
-    for (StampedPose& p : corrected) p.T_map_robot = corrected_pose(work.graph, work.merged, p.stamp, p.T_map_robot);
+    const std::string robot = work.graph.nodes.empty() ? "" : work.graph.nodes.front().robot;  // a log is of one
+    for (StampedPose& p : corrected)
+      p.T_map_robot = corrected_pose(work.graph, work.merged, robot, p.stamp, p.T_map_robot);
     if (const auto written = write_tum(corrected, arguments.trajectory); !written) return written;
   }
   if (!arguments.map.empty())

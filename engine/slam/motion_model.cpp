@@ -8,6 +8,13 @@ namespace {
 constexpr double kLongestExtrapolation_s = 0.5;
 constexpr double kTwistMemory_s = 0.4;
 constexpr double kMostOfNewTwist = 0.7;
+constexpr double kWheelMemory_s = 0.5;
+constexpr double kWheelsMayBeOff = 0.2;  ///< share of way and turn by which wheels are off before anything is learnt
+constexpr double kStep_m = 0.003, kStep_rad = 0.002;  ///< noise of a matched step
+constexpr double kWayPrior_m2 = (kStep_m / kWheelsMayBeOff) * (kStep_m / kWheelsMayBeOff);
+constexpr double kTurnPrior_rad2 = (kStep_rad / kWheelsMayBeOff) * (kStep_rad / kWheelsMayBeOff);
+
+std::complex<double> as_complex(const Point2& p) { return {p.x(), p.y()}; }
 }  // namespace
 
 void OdometryBuffer::add(const Odometry& reading) {
@@ -46,6 +53,22 @@ std::optional<Twist2> OdometryBuffer::twist() const {
 Twist2 twist_of(const Pose2& T_before_now, double seconds) {
   if (!(seconds > 1e-3)) return {};
   return {T_before_now.translation() / seconds, T_before_now.heading() / seconds};
+}
+
+void WheelError::learn(const Pose2& by_wheels, const Pose2& matched, double seconds) {
+  const double kept = std::exp(-std::max(0.0, seconds) / kWheelMemory_s);
+  const std::complex<double> wheels = as_complex(by_wheels.translation());
+  way_product_ = kept * way_product_ + std::conj(wheels) * as_complex(matched.translation());
+  way_square_ = kept * way_square_ + std::norm(wheels);
+  turn_product_ = kept * turn_product_ + by_wheels.heading() * matched.heading();
+  turn_square_ = kept * turn_square_ + by_wheels.heading() * by_wheels.heading();
+}
+
+Twist2 WheelError::corrected(const Twist2& by_wheels) const {
+  const std::complex<double> velocity =
+      as_complex(by_wheels.velocity_mps) * (way_product_ + kWayPrior_m2) / (way_square_ + kWayPrior_m2);
+  const double turn = (turn_product_ + kTurnPrior_rad2) / (turn_square_ + kTurnPrior_rad2);
+  return {{velocity.real(), velocity.imag()}, turn * by_wheels.turn_radps};
 }
 
 Twist2 smoothed(const std::optional<Twist2>& before, const Twist2& measured, double seconds) {

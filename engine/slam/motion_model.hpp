@@ -1,5 +1,6 @@
 #pragma once
 
+#include <complex>
 #include <deque>
 #include <optional>
 
@@ -39,6 +40,22 @@ PredictedStep predict_step(const std::optional<Pose2>& T_odom_before, const std:
 
 /// The constant motion that makes a step in the given time; zero for no time.
 Twist2 twist_of(const Pose2& T_before_now, double seconds);
+
+/// By how much the wheels turn, run and drift too far, learnt over the last half second from matched steps. A scan is
+/// straightened by the motion during its own turn, which only the wheels tell; wheels that slip would bend it, and its
+/// pose would be off by half the bend. Wheels that are right stay as they are: what it adds is less than a match's
+/// noise.
+class WheelError {
+ public:
+  /// A step as the wheels had it and as the match found it; `seconds` long, or a little longer.
+  void learn(const Pose2& by_wheels, const Pose2& matched, double seconds);
+  Twist2 corrected(const Twist2& by_wheels) const;
+
+ private:
+  // Least squares of matched = ratio * by_wheels; of the way the ratio is complex: it turns and scales.
+  std::complex<double> way_product_;
+  double way_square_ = 0, turn_product_ = 0, turn_square_ = 0;
+};
 
 /// The velocity to go on with after a step at `measured` that took `seconds`: a share of the new one. A velocity taken
 /// from one step straightens the next scan wrongly by its error, whose match then errs the other way: without the share

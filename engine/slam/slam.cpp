@@ -92,11 +92,15 @@ class Slam::Impl {
   Pose2 pose_of(const Anchor& anchor) const;
   void keep_node(Stamp stamp, const std::string& robot, const ScanPoints& points, const FrontEnd::Tracked& tracked);
   void count(ScanFate fate);
-  Twist2 twist_for_straightening() const { return odometry_.twist().value_or(twist_.value_or(Twist2{})); }
+  Twist2 twist_for_straightening() const {
+    if (const auto by_wheels = odometry_.twist()) return wheel_error_.corrected(*by_wheels);
+    return twist_.value_or(Twist2{});
+  }
 
   OdometryBuffer odometry_;
   std::optional<Pose2> T_odom_last_;  ///< odometry at the last scan
   std::optional<Twist2> twist_;       ///< of the last matched step
+  WheelError wheel_error_;
   std::optional<Stamp> last_stamp_;
   std::vector<float> last_ranges_;
   std::optional<RadarSweep> last_sweep_;
@@ -187,8 +191,11 @@ ScanOutcome Slam::Impl::add_points(Stamp stamp, const std::string& robot, const 
   const Pose2 T_track_before = track_pose();
   const FrontEnd::Tracked tracked = front_->track(points, step);
   last_stamp_ = stamp;
-  if (tracked.fate == ScanFate::kMatched && seconds > 1e-3)
-    twist_ = smoothed(twist_, twist_of(T_track_before.inverse() * tracked.T_track_robot, seconds), seconds);
+  if (tracked.fate == ScanFate::kMatched && seconds > 1e-3) {
+    const Pose2 matched = T_track_before.inverse() * tracked.T_track_robot;
+    twist_ = smoothed(twist_, twist_of(matched, seconds), seconds);
+    if (step.by_odometry) wheel_error_.learn(step.T_before_now, matched, seconds);
+  }
   if (tracked.fate == ScanFate::kNewPiece) twist_.reset();  // it led astray
   count(tracked.fate);
   ScanOutcome outcome{stamp, tracked.fate, {}, std::nullopt, tracked.score};

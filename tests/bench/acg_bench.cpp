@@ -75,7 +75,7 @@ constexpr Column kColumns[] = {
     {"missing R", &AcgScore::missing_found, true}, {"new P", &AcgScore::new_right, true},
     {"new R", &AcgScore::new_found, true},         {"fit", &AcgScore::fit, true},
     {"update s", &AcgScore::update_s, false},      {"slowest s", &AcgScore::slowest_s, false},
-    {"turned deg", &AcgScore::turned_deg, false},
+    {"turned deg", &AcgScore::turned_deg, false},  {"plan deg", &AcgScore::plan_turned_deg, false},
 };
 
 void print_row(const std::string& name, const std::vector<AcgScore>& scores, std::ofstream& json) {
@@ -121,6 +121,10 @@ void run_seed(const std::vector<Row>& all, std::uint64_t seed, std::vector<std::
     const std::lock_guard lock(mutex);
     if (score) out[i].push_back(*score);
     std::fprintf(stderr, "%s, seed %d: done in %.1f s\n", s.name.c_str(), static_cast<int>(seed), cpu_now_s() - begin);
+    if (score && score->turned.layout_wall >= 0)
+      std::fprintf(stderr, "%s, seed %d: wall %d (%.1f m, %s) turned most, %.1f deg at node %zu\n", s.name.c_str(),
+                   static_cast<int>(seed), score->turned.layout_wall, score->turned.length_m,
+                   to_string(score->turned.state), score->turned_deg, score->turned.nodes);
     if (!score)
       std::fprintf(stderr, "%s, seed %d: %s\n", s.name.c_str(), static_cast<int>(seed), score.error().message.c_str());
     if (score && !score->success && all[i].method == AcgMethod::kOurs)

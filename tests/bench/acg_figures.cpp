@@ -191,7 +191,12 @@ Result<AcgScore> run_acg(const AcgScenario& scenario, const AcgProblem& problem,
                                                                problem.demo, part, start);
     updates_s.push_back(cpu_now_s() - begin);
     if (!merged) return merged.error();
-    if (online) out.turned_deg = std::max(out.turned_deg, turned_deg(problem.demo, *merged));
+    if (online) {
+      TurnedWall turned = most_turned(problem.demo, *merged);
+      turned.nodes = n;
+      out.plan_turned_deg = std::max(out.plan_turned_deg, std::abs(turned.plan_turned_deg));
+      if (turned.turned_deg > out.turned_deg) out.turned = turned, out.turned_deg = turned.turned_deg;
+    }
     if (n == graph.nodes.size()) score_merged({problem.demo, problem.run, graph, start}, *merged, out);
   }
   out.slowest_s = *std::max_element(updates_s.begin(), updates_s.end());

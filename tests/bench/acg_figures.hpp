@@ -22,6 +22,16 @@ struct AcgScenario {
 
 enum class AcgMethod { kOurs, k2017, k2019 };
 
+/// A wall of the plan that bends more than any other.
+struct TurnedWall {
+  double turned_deg = 0;
+  int layout_wall = -1;
+  double length_m = 0;
+  WallState state = WallState::kUnseen;
+  double plan_turned_deg = 0;  ///< the plan as a whole, from where it truly lies
+  std::size_t nodes = 0;       ///< of the graph when it did
+};
+
 struct AcgScore {
   double pose_before_m = 0, pose_m = 0, yaw_rad = 0;
   double before_m = 0, seen_m = 0, never_before_m = 0, never_m = 0;
@@ -29,8 +39,9 @@ struct AcgScore {
   double links_right = 0, links_found = 0;
   double missing_right = 1, missing_found = 1, new_right = 1, new_found = 1;
   double fit = 0;
-  double update_s = 0, slowest_s = 0;  ///< CPU of one update; of the only one unless online
-  double turned_deg = 0;
+  double update_s = 0, slowest_s = 0;          ///< CPU of one update; of the only one unless online
+  double turned_deg = 0, plan_turned_deg = 0;  ///< the most in any update, if online
+  TurnedWall turned;
   int never = 0;  ///< corners no echo came near
   bool success = false;
 };

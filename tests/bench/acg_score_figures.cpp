@@ -187,20 +187,39 @@ void score_merged(const AcgTruth& truth, const MergedMap& merged, AcgScore& out)
   out.success = out.pose_m < 0.3 && out.seen_m < 0.15;
 }
 
-double turned_deg(const DemoScenario& demo, const MergedMap& merged) {
-  double worst = 0;
+/// A wall of 1.5 m or more that truly is there, by how its direction differs from that of the drawing, laid down
+/// rightly.
+struct WallTurn {
+  const MergedWall* wall;
+  double by_drawing_rad, by_truth_rad;
+};
+
+TurnedWall most_turned(const DemoScenario& demo, const MergedMap& merged) {
+  std::vector<WallTurn> turns;
+  std::vector<double> all;
+  const auto line_turn = [](double rad) { return 0.5 * wrap_angle(2 * rad); };
   for (const MergedWall& w : merged.walls) {
     if (!w.layout_wall || w.segment_map.length() < 1.5) continue;
     const int source = demo.truth.wall_source[static_cast<std::size_t>(*w.layout_wall)];
     if (source < 0) continue;
-    const double truth = demo.building.wall_line(source).heading() - demo.T_world_start.heading();
-    // Corners are drawn 5 cm off, which turns a wall of two metres by two degrees already: bent is what lies neither as
-    // it truly does nor as it is drawn.
+    const double heading = w.segment_map.heading();
     const double drawn = demo.truth.layout.wall_m(*w.layout_wall).heading() - demo.true_start.heading_rad;
-    worst = std::max(worst, std::min(line_angle_between(w.segment_map.heading(), truth),
-                                     line_angle_between(w.segment_map.heading(), drawn)));
+    const double truth = demo.building.wall_line(source).heading() - demo.T_world_start.heading();
+    turns.push_back({&w, line_turn(heading - drawn), line_turn(heading - truth)});
+    all.push_back(turns.back().by_drawing_rad);
   }
-  return worst * 180 / kPi;
+  TurnedWall worst;
+  worst.plan_turned_deg = median_of(all) * 180 / kPi;
+  for (const WallTurn& t : turns) {
+    // Corners are drawn 5 cm off, which turns a wall of two metres by two degrees already: bent is what lies neither as
+    // it truly does nor as it is drawn in the plan as this lies now, nor in between.
+    const double by_truth = t.by_truth_rad, by_drawing = t.by_drawing_rad - median_of(all);
+    const double bent = by_truth * by_drawing < 0 ? 0 : std::min(std::abs(by_truth), std::abs(by_drawing)) * 180 / kPi;
+    if (bent <= worst.turned_deg) continue;
+    worst.turned_deg = bent, worst.layout_wall = *t.wall->layout_wall;
+    worst.length_m = t.wall->segment_map.length(), worst.state = t.wall->state;
+  }
+  return worst;
 }
 
 }  // namespace smokemap::bench

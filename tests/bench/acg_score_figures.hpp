@@ -17,7 +17,8 @@ struct AcgTruth {
 /// Everything but the times and the turn of walls.
 void score_merged(const AcgTruth& truth, const MergedMap& merged, AcgScore& out);
 
-/// Largest angle between a true wall of 1.5 m or more and where it truly leads.
-double turned_deg(const DemoScenario& demo, const MergedMap& merged);
+/// Of the walls of 1.5 m or more that truly are there the one that leads farthest from both its true direction and
+/// that in the drawing as this lies now.
+TurnedWall most_turned(const DemoScenario& demo, const MergedMap& merged);
 
 }  // namespace smokemap::bench

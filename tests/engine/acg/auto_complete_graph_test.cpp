@@ -350,10 +350,10 @@ TEST(CorrectedPose, BlendsTheCorrectionsOfTheNodesAround) {
     merged.trajectory.emplace_back();
     merged.trajectory.back().T_map_robot = Pose2(i, 0.2 * i, 0);
   }
-  EXPECT_THAT(corrected_pose(graph, merged, from_seconds(0.5), Pose2(0.5, 0, 0)),
+  EXPECT_THAT(corrected_pose(graph, merged, "", from_seconds(0.5), Pose2(0.5, 0, 0)),
               IsNear(Pose2(0.5, 0.1, 0), 1e-9, 1e-9));
-  EXPECT_THAT(corrected_pose(graph, merged, from_seconds(3), Pose2(3, 0, 0)), IsNear(Pose2(3, 0.2, 0), 1e-9, 1e-9));
-  EXPECT_THAT(corrected_pose({}, merged, 0, Pose2(3, 0, 0)), IsNear(Pose2(3, 0, 0), 1e-9, 1e-9));
+  EXPECT_THAT(corrected_pose(graph, merged, "", from_seconds(3), Pose2(3, 0, 0)), IsNear(Pose2(3, 0.2, 0), 1e-9, 1e-9));
+  EXPECT_THAT(corrected_pose({}, merged, "", 0, Pose2(3, 0, 0)), IsNear(Pose2(3, 0, 0), 1e-9, 1e-9));
 }
 
 TEST(AcgParams, AreChecked) {

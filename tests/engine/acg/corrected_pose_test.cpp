@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+#include <string>
+
 #include "acg/auto_complete_graph.hpp"
 #include "acg/node_store.hpp"
 #include "core/random.hpp"
@@ -44,7 +48,7 @@ TEST(CorrectedPose, MovesEverythingAlikeWhenAllNodesMovedAlike) {
     for (const PoseNode& n : graph.nodes) correct_to(n, correction * n.T_map_robot, merged);
     for (int k = 0; k < 10; ++k) {
       const Pose2 slam = pose_within(random, 10);
-      EXPECT_THAT(corrected_pose(graph, merged, from_seconds(uniform(random, -2, 8)), slam),
+      EXPECT_THAT(corrected_pose(graph, merged, graph.nodes.front().robot, from_seconds(uniform(random, -2, 8)), slam),
                   IsNear(correction * slam, 1e-9, 1e-9));
     }
   }
@@ -56,10 +60,29 @@ TEST(CorrectedPose, IsTheNodesOwnAtItsTimeAndChangesNothingForAnotherGraph) {
   MergedMap merged;
   for (const PoseNode& n : graph.nodes) correct_to(n, pose_within(random, 3), merged);
   for (std::size_t i = 0; i < graph.nodes.size(); ++i)
-    EXPECT_THAT(corrected_pose(graph, merged, graph.nodes[i].stamp, graph.nodes[i].T_map_robot),
+    EXPECT_THAT(corrected_pose(graph, merged, graph.nodes[i].robot, graph.nodes[i].stamp, graph.nodes[i].T_map_robot),
                 IsNear(merged.trajectory[i].T_map_robot, 1e-9, 1e-9));
+  EXPECT_THAT(corrected_pose(graph, merged, "three", from_seconds(2), Pose2(1, 2, 3)), IsNear(Pose2(1, 2, 3), 0, 0));
   merged.trajectory.pop_back();
-  EXPECT_THAT(corrected_pose(graph, merged, from_seconds(2), Pose2(1, 2, 3)), IsNear(Pose2(1, 2, 3), 0, 0));
+  EXPECT_THAT(corrected_pose(graph, merged, "one", from_seconds(2), Pose2(1, 2, 3)), IsNear(Pose2(1, 2, 3), 0, 0));
+}
+
+// Nodes of all robots were blended, so a robot was drawn between its own correction and that of another one.
+TEST(CorrectedPose, FollowsOnlyTheRobotsOwnNodes) {
+  auto random = random_stream(45, 4);
+  for (int i = 0; i < 50; ++i) {
+    const PoseGraph graph = random_walk(random, 12);
+    const std::map<std::string, Pose2> corrections{{"one", pose_within(random, 20)}, {"two", pose_within(random, 20)}};
+    MergedMap merged;
+    for (const PoseNode& n : graph.nodes) correct_to(n, corrections.at(n.robot) * n.T_map_robot, merged);
+    for (const auto& [robot, correction] : corrections) {
+      const bool known = std::any_of(graph.nodes.begin(), graph.nodes.end(),
+                                     [&, &name = robot](const PoseNode& n) { return n.robot == name; });
+      const Pose2 slam = pose_within(random, 10);
+      EXPECT_THAT(corrected_pose(graph, merged, robot, from_seconds(uniform(random, -2, 14)), slam),
+                  IsNear(known ? correction * slam : slam, 1e-9, 1e-9));
+    }
+  }
 }
 
 TEST(NodeStore, KnowsTheSameWhetherNodesComeOneByOneOrAllAtOnce) {
