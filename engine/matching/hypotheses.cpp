@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "matching/explained.hpp"
 #include "matching/region_graph.hpp"
 
 namespace smokemap {
@@ -67,13 +68,13 @@ std::vector<Hypothesis> HypothesisFinder::find(const std::vector<Pin>& pins, con
 FitEvidence HypothesisFinder::weigh_fit(const std::vector<Hypothesis>& all) const {
   const Hypothesis& best = all.front();
   FitEvidence fit;
-  const double matched = this->matched(best.structure);
+  const double matched = matched_share(graph_a_, best.structure.partner);
   double likeness = 0;
   for (int i = 0; i < graph_a_.size(); ++i)
     if (const int j = best.structure.partner[static_cast<size_t>(i)]; j >= 0)
       likeness += graph_a_.importance(i) * best.scores.likeness(i, j);
   fit.likeness = matched > 0 ? likeness / matched : 0;
-  fit.explained = matched * covered(best.structure);
+  fit.explained = matched * covered_share(graph_b_, best.structure.partner);
   // The wrong side of the sheet: the mirror image, or the drawing as it is if the answer is mirrored itself.
   const bool is_mirrored = best.turn_b_a.determinant() < 0;
   double wrong_side = is_mirrored ? 0 : mirrored_score_;
@@ -113,43 +114,11 @@ Hypothesis HypothesisFinder::solve(const MapAlignment& alignment, const std::vec
   problem.forced = rules.forced, problem.forbidden = rules.forbidden;
   problem.many_to_one = params_.allow_many_to_many;
   result.structure = match_structure(problem);
-  result.score = result.structure.energy + kWarpWeight * result.warp.score + kCoverWeight * covered(result.structure) +
-                 kMatchedWeight * matched(result.structure) - kSizeSpreadWeight * size_spread(result.structure);
+  const std::vector<int>& partner = result.structure.partner;
+  result.score = result.structure.energy + kWarpWeight * result.warp.score +
+                 kCoverWeight * covered_share(graph_b_, partner) + kMatchedWeight * matched_share(graph_a_, partner) -
+                 kSizeSpreadWeight * size_spread(graph_a_, graph_b_, partner);
   return result;
-}
-
-/// Share of b, by importance, that some region of a goes to.
-double HypothesisFinder::covered(const StructureMatch& structure) const {
-  double sum = 0;
-  for (int j = 0; j < graph_b_.size(); ++j)
-    if (std::find(structure.partner.begin(), structure.partner.end(), j) != structure.partner.end())
-      sum += graph_b_.importance(j);
-  return sum;
-}
-
-/// Share of a, by importance, that goes to some region of b.
-double HypothesisFinder::matched(const StructureMatch& structure) const {
-  double sum = 0;
-  for (int i = 0; i < graph_a_.size(); ++i)
-    if (structure.partner[static_cast<size_t>(i)] >= 0) sum += graph_a_.importance(i);
-  return sum;
-}
-
-/// Standard deviation, by importance, of the logarithm of how much larger partners are than what was drawn of them: a
-/// drawing has one scale, and who mistakes rooms for others finds some far too large beside some far too small.
-double HypothesisFinder::size_spread(const StructureMatch& structure) const {
-  Eigen::VectorXd drawn = Eigen::VectorXd::Zero(graph_b_.size());  // area of all that goes to one region
-  for (int i = 0; i < graph_a_.size(); ++i)
-    if (const int j = structure.partner[static_cast<size_t>(i)]; j >= 0) drawn(j) += graph_a_.area(i);
-  double total = 0, sum = 0, squares = 0;
-  for (int i = 0; i < graph_a_.size(); ++i) {
-    const int j = structure.partner[static_cast<size_t>(i)];
-    if (j < 0) continue;
-    const double larger = std::log(graph_b_.area(j) / drawn(j)), weight = graph_a_.importance(i);
-    total += weight, sum += weight * larger, squares += weight * larger * larger;
-  }
-  if (total <= 0) return 1;
-  return std::sqrt(std::max(0.0, squares / total - sum * sum / (total * total)));
 }
 
 /// Turn kept; scale along both wall directions of b and shift such that partners' middles meet, weighted.

@@ -59,9 +59,6 @@ class HypothesisFinder {
   std::vector<Hypothesis> find_among(const AlignmentSearch& alignments, const std::vector<Pin>& pins,
                                      const PairRules& rules) const;
   Hypothesis solve(const MapAlignment& alignment, const std::vector<Pin>& pins, const PairRules& rules) const;
-  double covered(const StructureMatch& structure) const;
-  double matched(const StructureMatch& structure) const;
-  double size_spread(const StructureMatch& structure) const;
   MapAlignment laid_by_pairs(const Hypothesis& hypothesis) const;
 
   Segmentation a_, b_;
