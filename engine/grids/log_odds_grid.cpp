@@ -41,7 +41,8 @@ void LogOddsGrid::grow(const Eigen::Vector2d& low, const Eigen::Vector2d& high, 
   counts_ = std::move(moved);
 }
 
-void LogOddsGrid::trace(const Eigen::Vector2d& origin, const Eigen::Vector2d& end, bool hit, int times) {
+void LogOddsGrid::trace(const Eigen::Vector2d& origin, const Eigen::Vector2d& end, bool hit, int times,
+                        double grazed_m) {
   if (!origin.allFinite() || !end.allFinite()) return;
   grow(origin.cwiseMin(end), origin.cwiseMax(end), kGrowBy_m);
   const Cell last = frame_.cell_of(end);
@@ -49,7 +50,7 @@ void LogOddsGrid::trace(const Eigen::Vector2d& origin, const Eigen::Vector2d& en
     Counts& counts = counts_[frame_.index(cell)];
     if (cell == last && hit)
       counts.hits += times;
-    else
+    else if (grazed_m <= 0 || (frame_.center_of(cell) - end).squaredNorm() > grazed_m * grazed_m)
       counts.passes += times;
     return true;
   });

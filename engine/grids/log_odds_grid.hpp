@@ -22,12 +22,18 @@ class LogOddsGrid {
   explicit LogOddsGrid(double resolution_m = 0.05, const LogOddsParams& params = {});
 
   /// A beam from `origin` that ended on something at `end`: cells before it are passed, the last one is hit.
-  void add_hit(const Eigen::Vector2d& origin, const Eigen::Vector2d& end) { trace(origin, end, true, 1); }
+  /// @param grazed_m  of the beam's end, along which it passes so near to what it hit that its cells are the surface's:
+  ///                  they are not passed
+  void add_hit(const Eigen::Vector2d& origin, const Eigen::Vector2d& end, double grazed_m = 0) {
+    trace(origin, end, true, 1, grazed_m);
+  }
   /// A beam known to be free up to `end`.
-  void add_free(const Eigen::Vector2d& origin, const Eigen::Vector2d& end) { trace(origin, end, false, 1); }
+  void add_free(const Eigen::Vector2d& origin, const Eigen::Vector2d& end) { trace(origin, end, false, 1, 0); }
   /// Takes back an earlier add with the same arguments.
-  void remove_hit(const Eigen::Vector2d& origin, const Eigen::Vector2d& end) { trace(origin, end, true, -1); }
-  void remove_free(const Eigen::Vector2d& origin, const Eigen::Vector2d& end) { trace(origin, end, false, -1); }
+  void remove_hit(const Eigen::Vector2d& origin, const Eigen::Vector2d& end, double grazed_m = 0) {
+    trace(origin, end, true, -1, grazed_m);
+  }
+  void remove_free(const Eigen::Vector2d& origin, const Eigen::Vector2d& end) { trace(origin, end, false, -1, 0); }
 
   /// Makes room for points within these corners, and for no more; never shrinks. Growing by itself the grid takes room
   /// to spare, and for a moment twice what it has.
@@ -46,7 +52,7 @@ class LogOddsGrid {
     std::int32_t passes = 0;
   };
   void grow(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double margin_m);
-  void trace(const Eigen::Vector2d& origin, const Eigen::Vector2d& end, bool hit, int times);
+  void trace(const Eigen::Vector2d& origin, const Eigen::Vector2d& end, bool hit, int times, double grazed_m);
   std::int8_t percent(const Counts& counts) const;
 
   LogOddsParams params_;

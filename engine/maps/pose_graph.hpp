@@ -19,7 +19,10 @@ struct PoseNode {
   Stamp stamp = 0;
   Pose2 T_map_robot;  ///< SLAM's own estimate
   Pose2 T_odom_robot;
-  std::shared_ptr<const std::vector<Point2>> hits_robot;       ///< de-skewed hits, robot frame, thinned
+  std::shared_ptr<const std::vector<Point2>> hits_robot;  ///< de-skewed hits, robot frame, thinned
+  /// What the radar saw beside a lidar that smoke had blinded; null otherwise. Several times less exact than hits: to
+  /// be drawn, not to be measured by. (Of a robot with a radar alone, hits_robot are the radar's.)
+  std::shared_ptr<const std::vector<Point2>> radar_hits_robot;
   std::shared_ptr<const std::vector<Point2>> free_ends_robot;  ///< ends of beams known free up to there, robot frame
 };
 

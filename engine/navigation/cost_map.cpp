@@ -153,6 +153,13 @@ bool CostMap::drivable(Cell cell) const {
   return (g == Ground::kFree || g == Ground::kPlanned) && clearance_m(cell) >= params_.robot_radius_m;
 }
 
+CostMap CostMap::with_blocked(const std::vector<Point2>& places_map) const {
+  std::vector<Ground> ground = ground_;
+  for (const Point2& p : places_map)
+    if (const Cell cell = frame_.cell_of(p); frame_.contains(cell)) ground[frame_.index(cell)] = Ground::kBlocked;
+  return CostMap(frame_, std::move(ground), params_);
+}
+
 double CostMap::cost_per_metre(Cell cell) const {
   const double room = (clearance_m(cell) - params_.robot_radius_m) / params_.soft_clearance_m;
   const double tight = std::clamp(1 - room, 0.0, 1.0);

@@ -20,7 +20,7 @@ enum class Ground : std::uint8_t {
 
 struct CostMapParams {
   double resolution_m = 0.10;
-  double robot_radius_m = 0.25;
+  double robot_radius_m = 0.30;    ///< with what poses may be wrong by: a robot of 0.25 m scraped at jambs
   double soft_clearance_m = 0.40;  ///< beyond the radius: nearer to walls costs more
   double planned_penalty = 1.5;    ///< a metre through rooms nobody saw costs this much more than a metre seen
   double margin_m = 3.0;           ///< around everything known
@@ -41,6 +41,8 @@ class CostMap {
   }
   /// Seen free or planned, with room for the robot's radius.
   bool drivable(Cell cell) const;
+  /// The same with these places blocked too: what a robot met that the map does not show.
+  CostMap with_blocked(const std::vector<Point2>& places_map) const;
   /// Cost of a metre here, at least 1.
   double cost_per_metre(Cell cell) const;
 

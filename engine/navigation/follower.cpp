@@ -1,6 +1,8 @@
 #include "navigation/follower.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "core/check.hpp"
@@ -15,6 +17,7 @@ Result<Ok> FollowerParams::validate() const {
       .positive("lookahead_m", lookahead_m)
       .in_range("turn_in_place_rad", turn_in_place_rad, 0.1, kPi)
       .positive("robot_radius_m", robot_radius_m)
+      .in_range("margin_m", margin_m, 0, 1)
       .positive("stop_time_s", stop_time_s)
       .in_range("stop_points", stop_points, 1, 100)
       .result();
@@ -62,12 +65,45 @@ Twist follow(const Path& path, const Pose2& T_map_robot, const FollowerParams& p
   return {params.max_speed_mps * std::min(straight, at_end), turn};
 }
 
-bool blocked_ahead(const std::vector<Point2>& obstacles_robot, double speed_mps, const FollowerParams& params) {
-  const double reach = params.robot_radius_m + 0.05 + std::max(0.0, speed_mps) * params.stop_time_s;
-  int count = 0;
-  for (const Point2& p : obstacles_robot)
-    if (p.x() > 0 && p.x() < reach && std::abs(p.y()) < params.robot_radius_m - 0.02) ++count;
-  return count >= params.stop_points;
+bool is_clear(const Twist& twist, const std::vector<Point2>& obstacles_robot, const FollowerParams& params) {
+  constexpr int kSteps = 7;
+  constexpr double kNearer = 1e-3;
+  const double keep = params.robot_radius_m + params.margin_m;
+  const double reach = keep + std::abs(twist.speed_mps) * params.stop_time_s;
+  std::array<Point2, kSteps> centers;
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = params.stop_time_s * (i + 1) / kSteps, turn = twist.turn_rate_radps * t;
+    const double chord = twist.speed_mps * t * (std::abs(turn) < 1e-6 ? 1 : std::sin(turn / 2) / (turn / 2));
+    centers[static_cast<std::size_t>(i)] = {chord * std::cos(turn / 2), chord * std::sin(turn / 2)};
+  }
+  int touched = 0;
+  for (const Point2& p : obstacles_robot) {
+    const double now = p.norm();
+    if (now > reach) continue;
+    touched += std::any_of(centers.begin(), centers.end(), [&](const Point2& center) {
+      const double then = (p - center).norm();
+      return then < keep && then < now - kNearer;
+    });
+  }
+  return touched < params.stop_points;
+}
+
+std::optional<Twist> steer_clear(const Twist& wanted, const std::vector<Point2>& obstacles_robot,
+                                 const FollowerParams& params) {
+  constexpr double kLeastSpeed = 0.08, kPerTurn = 0.8;  // a slow creep with a turn gets out of corners
+  if (wanted.speed_mps == 0 || is_clear(wanted, obstacles_robot, params)) return wanted;
+  std::optional<Twist> best;
+  double least = 0;
+  for (const double share : {1.0, 0.5, 0.25})
+    for (const double more : {0.0, 0.15, -0.15, 0.3, -0.3, 0.5, -0.5, 0.8, -0.8}) {
+      const double cost = 1 - share + kPerTurn * std::abs(more);
+      if (best && cost >= least) continue;
+      const Twist twist{
+          std::max(share * wanted.speed_mps, std::min(kLeastSpeed, wanted.speed_mps)),
+          std::clamp(wanted.turn_rate_radps + more, -params.max_turn_rate_radps, params.max_turn_rate_radps)};
+      if (is_clear(twist, obstacles_robot, params)) best = twist, least = cost;
+    }
+  return best;
 }
 
 }  // namespace smokemap

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/check.hpp"
 
@@ -20,6 +21,9 @@ Result<Ok> FleetParams::validate() const {
       .positive("stale_after_s", stale_after_s)
       .in_range("lost_after_s", lost_after_s, stale_after_s, 3600)
       .positive("look_again_s", look_again_s)
+      .in_range("look_patience_s", look_patience_s, look_again_s, 36000)
+      .in_range("smoky_share", smoky_share, 0, 1)
+      .in_range("clear_share", clear_share, 0, smoky_share)
       .in_range("explore_pause_s", explore_pause_s, 0, 60)
       .in_range("robot_radius_m", robot_radius_m, 0, 5)
       .result();
@@ -33,6 +37,9 @@ void Fleet::report(const PoseReport& report) {
   Robot& robot = robot_of(report.robot);
   robot.T_graph_robot = report.T_graph_robot;
   robot.obstacles_robot = report.obstacles_robot;
+  robot.smoke_share = report.smoke_share;
+  if (report.localized && report.smoke_share <= params_.clear_share)
+    robot.p_graph_clear = report.T_graph_robot.translation();
   robot.ever_localized = robot.ever_localized || report.localized;
   robot.status.sigma_m = report.sigma_m;
   robot.status.sigma_rad = report.sigma_rad;
@@ -92,14 +99,14 @@ void Fleet::steer(Robot& robot, Stamp now, Whiteboard& board, const Carrier& car
   if (status.note.empty()) status.note = robot.last.reason;
   if (!goal && robot.pilot.target() &&
       (robot.last.state == PilotState::kArrived || robot.last.state == PilotState::kGivenUp)) {
-    robot.avoided.push_back(*robot.pilot.target());
+    if (!std::exchange(robot.p_map_retreat, std::nullopt)) robot.avoided.push_back(*robot.pilot.target());
     robot.pilot.set_target(std::nullopt);
     robot.idle_since = now;
   }
 }
 
 void Fleet::drive(Robot& robot, Stamp now) {
-  robot.last = robot.pilot.step(now, robot.status.T_map_robot, obstacles_of(robot));
+  robot.last = robot.pilot.step(now, robot.status.T_map_robot, obstacles_of(robot), robot.smoke_share);
   commands_->drive(robot.status.id, robot.last.twist.speed_mps, robot.last.twist.turn_rate_radps);
 }
 
@@ -173,6 +180,7 @@ void Fleet::take_target(Robot& robot, Stamp now, Goal* goal, const Carrier& carr
     robot.pilot.set_target(std::nullopt);
     robot.idle_since = now;
   }
+  if (robot.p_map_retreat) return go_back(robot, now);
   if (!explores) {
     robot.pilot.set_target(std::nullopt);
     return;
@@ -186,10 +194,17 @@ void Fleet::take_target(Robot& robot, Stamp now, Goal* goal, const Carrier& carr
     robot.status.note = "everything that can be reached was seen";
 }
 
+void Fleet::go_back(Robot& robot, Stamp now) {
+  robot.idle_since = now;
+  robot.status.note = "it could not get on in the smoke and goes back to where it can see";
+  if (!robot.pilot.target()) robot.pilot.set_target(*robot.p_map_retreat);
+}
+
 void Fleet::take_goal(Robot& robot, Goal& goal, const Point2& p_map) {
-  if (robot.status.goal_id != goal.id) goal.state = GoalState::kSent, robot.avoided.clear();
+  if (robot.status.goal_id != goal.id) goal.state = GoalState::kSent, robot.avoided.clear(), robot.looking_s = 0;
   robot.status.goal_id = goal.id;
   robot.detour = false;
+  robot.p_map_retreat.reset();
   robot.pilot.set_target(p_map, goal.heading_rad);
 }
 
@@ -207,6 +222,7 @@ bool Fleet::look_for_way(Robot& robot, Stamp now, const Goal& goal, const Point2
   }
   if (robot.detour && !there) return true;
   if (there && robot.pilot.target()) robot.avoided.push_back(*robot.pilot.target());
+  if (there && robot.last_detour == PilotState::kArrived) robot.looking_s = 0;
   const auto frontier = best_frontier(*map_, here, avoided_by(robot), params_.frontier, p_map);
   robot.detour = frontier.has_value();
   robot.last_detour = PilotState::kDriving;
@@ -215,8 +231,12 @@ bool Fleet::look_for_way(Robot& robot, Stamp now, const Goal& goal, const Point2
 }
 
 void Fleet::settle_goal(Robot& robot, Stamp now, Goal* goal, const Carrier& carrier) {
+  const Stamp before = std::exchange(robot.steered_at, now);
   if (!goal) return;
   if (robot.detour) {
+    robot.looking_s += std::min(1.0, to_seconds(now - before));
+    if (robot.looking_s > params_.look_patience_s)
+      return give_up(robot, *goal, "no way there was found, and nothing new was seen for a minute");
     robot.last_detour = robot.last.state;
     goal->state = GoalState::kDriving;
     goal->reason = "no way is known yet: looking for one";
@@ -230,8 +250,7 @@ void Fleet::settle_goal(Robot& robot, Stamp now, Goal* goal, const Carrier& carr
       goal->state = GoalState::kArrived, goal->reason.clear();
       break;
     case PilotState::kGivenUp:
-      goal->state = goal->state == GoalState::kSent ? GoalState::kRefused : GoalState::kFailed;
-      goal->reason = robot.last.reason;
+      give_up(robot, *goal, robot.last.reason);
       break;
     case PilotState::kDriving:
       goal->state = GoalState::kDriving, goal->reason.clear();
@@ -240,6 +259,14 @@ void Fleet::settle_goal(Robot& robot, Stamp now, Goal* goal, const Carrier& carr
       goal->reason = robot.last.reason;
       break;
   }
+}
+
+void Fleet::give_up(Robot& robot, Goal& goal, const std::string& reason) {
+  goal.state = goal.state == GoalState::kSent ? GoalState::kRefused : GoalState::kFailed;
+  const bool smoky = robot.smoke_share >= params_.smoky_share;
+  goal.reason = smoky ? "the robot cannot get on in the smoke: " + reason : reason;
+  robot.detour = false;
+  if (smoky && robot.p_graph_clear) robot.p_map_retreat = robot.T_map_graph * *robot.p_graph_clear;
 }
 
 std::vector<RobotStatus> Fleet::status() const {

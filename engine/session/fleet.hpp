@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct FleetParams {
   double stale_after_s = 1.0;
   double lost_after_s = 5.0;
   double look_again_s = 2.0;     ///< between two searches for a way that was not known
+  double look_patience_s = 60;   ///< looking for a way without coming anywhere new
+  double smoky_share = 0.5;      ///< a robot that gives up in such smoke goes back ...
+  double clear_share = 0.25;     ///< ... to where it last had this view
   double explore_pause_s = 1.0;  ///< after a place was reached, before the next is chosen
   double robot_radius_m = 0.35;  ///< of another robot, which the map does not show
   Result<Ok> validate() const;
@@ -53,6 +57,7 @@ struct PoseReport {
   bool localized = false;
   double speed_mps = 0;
   std::vector<Point2> obstacles_robot;  ///< what stands near, smoke left out (ObstacleWatch)
+  double smoke_share = 0;               ///< of the lidar's beams that smoke swallows
 };
 
 /// Values only: planning takes a while, and happens without any lock.
@@ -99,11 +104,16 @@ class Fleet {
     Pose2 T_graph_robot;
     Pose2 T_map_graph;
     std::vector<Point2> obstacles_robot;
+    double smoke_share = 0;
+    std::optional<Point2> p_graph_clear;  ///< where it last saw well
+    std::optional<Point2> p_map_retreat;  ///< where it goes, having given up in smoke
     PilotOutput last;
     std::vector<Point2> avoided;  ///< frontiers that could not be reached, or were
     PilotState last_detour = PilotState::kIdle;
-    bool detour = false;  ///< no way to the goal is known: the pilot looks for one
-    Stamp looked_at = 0;  ///< when a way to the goal was last asked for
+    bool detour = false;   ///< no way to the goal is known: the pilot looks for one
+    Stamp looked_at = 0;   ///< when a way to the goal was last asked for
+    double looking_s = 0;  ///< for a way, without coming anywhere new
+    Stamp steered_at = 0;
     Stamp idle_since = 0;
     bool ever_localized = false;
   };
@@ -124,6 +134,9 @@ class Fleet {
   /// nearest to the goal, until a way is known or nothing is left to look at. False: nothing is left.
   bool look_for_way(Robot& robot, Stamp now, const Goal& goal, const Point2& p_map);
   void settle_goal(Robot& robot, Stamp now, Goal* goal, const Carrier& carrier);
+  /// The goal cannot be reached; in smoke the robot goes back to where it can see.
+  void give_up(Robot& robot, Goal& goal, const std::string& reason);
+  void go_back(Robot& robot, Stamp now);
   Robot& robot_of(const std::string& id);
 
   FleetParams params_;

@@ -69,6 +69,7 @@ std::optional<PoseReport> Mapper::add(const SensorItem& item) {
   if (const auto* odometry = std::get_if<Odometry>(&item)) {
     Track& track = track_of(odometry->robot);
     track.slam.add_odometry(*odometry);
+    track.odometry.add(*odometry);
     track.T_odom_robot = odometry->T_odom_robot;
     track.speed_mps = odometry->speed_mps;
     return std::nullopt;
@@ -76,15 +77,16 @@ std::optional<PoseReport> Mapper::add(const SensorItem& item) {
   if (const auto* sweep = std::get_if<RadarSweep>(&item)) {
     Track& track = track_of(sweep->robot);
     (void)track.slam.add_sweep(*sweep);
-    track.watch.add_sweep(*sweep, track.T_odom_robot);
+    track.watch.add_sweep(*sweep, track.T_odom_at(sweep->stamp), track.odometry.twist().value_or(Twist2{}));
     return std::nullopt;
   }
   const auto& scan = std::get<LaserScan>(item);
   Track& track = track_of(scan.robot);
   auto made = report(scan.robot, track, track.slam.add_scan(scan));
   if (!made) return made;
-  track.watch.add_scan(scan, track.T_odom_robot);
-  made->obstacles_robot = track.watch.obstacles_robot();
+  track.watch.add_scan(scan, track.T_odom_at(scan.stamp), track.odometry.twist().value_or(Twist2{}));
+  made->obstacles_robot = track.watch.obstacles_robot(track.T_odom_robot);
+  made->smoke_share = track.watch.smoke_share();
   return made;
 }
 

@@ -14,6 +14,7 @@
 #include "session/fleet.hpp"
 #include "session/graph_union.hpp"
 #include "session/locator.hpp"
+#include "slam/motion_model.hpp"
 #include "slam/slam.hpp"
 
 namespace smokemap {
@@ -56,9 +57,11 @@ class Mapper {
  private:
   struct Track {
     explicit Track(GraphWork work) : slam(SlamParams{}, work) {}
+    Pose2 T_odom_at(Stamp stamp) const { return odometry.at(stamp).value_or(T_odom_robot); }
 
     Slam slam;
     ObstacleWatch watch;
+    OdometryBuffer odometry;
     Pose2 T_odom_robot;
     double speed_mps = 0;
     Locator locator;

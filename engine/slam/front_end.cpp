@@ -124,7 +124,8 @@ bool FrontEnd::far_from_last_node() const {
 
 void FrontEnd::keep(const ScanPoints& points, Tracked& tracked) {
   tracked.node = true;
-  tracked.hits_robot = lasting(points);
+  tracked.hits_robot = points.by_radar ? lasting(points.hits_robot) : points.hits_robot;
+  tracked.radar_hits_robot = lasting(points.radar_hits_robot);
   nodes_.push_back({T_track_robot_, points.surface, points.by_radar});
   while (nodes_.size() > static_cast<std::size_t>(params_.front_end.map_nodes)) nodes_.pop_front();
   blind_covariance_.setZero();
@@ -154,11 +155,12 @@ void FrontEnd::add_to_map(const Node& node) {
 
 /// Ghosts of multi-path do not stay in place: an echo is drawn once the local map, seen from elsewhere, has a surface
 /// there. The first node knows no other place and draws nothing.
-std::shared_ptr<const std::vector<Point2>> FrontEnd::lasting(const ScanPoints& points) const {
-  if (!points.by_radar || !points.hits_robot) return points.hits_robot;
+std::shared_ptr<const std::vector<Point2>> FrontEnd::lasting(
+    const std::shared_ptr<const std::vector<Point2>>& hits) const {
+  if (!hits) return nullptr;
   std::vector<Point2> kept;
   SurfaceMap::Surface surface;
-  for (const Point2& p : *points.hits_robot)
+  for (const Point2& p : *hits)
     if (map_.nearest(T_track_robot_ * p, Point2::Zero(), by_radar_.radar.lasting_within_m, -1, surface))
       kept.push_back(p);
   return std::make_shared<const std::vector<Point2>>(std::move(kept));

@@ -33,9 +33,9 @@ class FrontEnd {
     Pose2 T_node_robot;                                    ///< from the last node (before this one, if this is one)
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of T_node_robot, frame of that node
     EdgeKind kind = EdgeKind::kMatched;
-    /// Of a node: what may be drawn. All hits of a lidar; of the radar's those that an earlier node, from another
+    /// Of a node: what may be drawn. All hits of a lidar; of the radar those that an earlier node, from another
     /// place, has seen too: what mirrors show moves when the radar does.
-    std::shared_ptr<const std::vector<Point2>> hits_robot;
+    std::shared_ptr<const std::vector<Point2>> hits_robot, radar_hits_robot;
   };
 
   explicit FrontEnd(const SlamParams& params);
@@ -51,7 +51,7 @@ class FrontEnd {
   };
   void match_as(bool radar);
   void add_to_map(const Node& node);
-  std::shared_ptr<const std::vector<Point2>> lasting(const ScanPoints& points) const;
+  std::shared_ptr<const std::vector<Point2>> lasting(const std::shared_ptr<const std::vector<Point2>>& hits) const;
   ScanAlignment match(const std::vector<SurfacePoint>& surface, const Pose2& predicted, const PredictedStep& step);
   bool believable(const ScanAlignment& found, const Pose2& predicted, const PredictedStep& step) const;
   Tracked go_on_blindly(const ScanPoints& points, const Pose2& predicted, const PredictedStep& step, double score);

@@ -34,7 +34,7 @@ class MapRenderer {
  private:
   struct Drawn {
     Pose2 T_map_robot;
-    std::shared_ptr<const std::vector<Point2>> hits_robot, free_ends_robot;
+    std::shared_ptr<const std::vector<Point2>> hits_robot, radar_hits_robot, free_ends_robot;
   };
   void make_room(const PoseGraph& graph, const std::vector<Pose2>& T_map_nodes);
   void draw(const Drawn& what, bool add);

@@ -26,9 +26,9 @@ void add_radar(ScanPoints& points, const ScanPoints& radar, const Pose2& T_now_t
   for (const SurfacePoint& point : radar.surface)
     points.surface.push_back({T_now_then * point.p, R * point.normal, weight * exactness * exactness * point.weight});
   if (weight < 1) return;
-  auto hits = *points.hits_robot;
+  std::vector<Point2> hits;
   for (const Point2& p : *radar.hits_robot) hits.push_back(T_now_then * p);
-  points.hits_robot = std::make_shared<const std::vector<Point2>>(std::move(hits));
+  points.radar_hits_robot = std::make_shared<const std::vector<Point2>>(std::move(hits));
 }
 
 /// Where a scan stands relative to the graph.
@@ -219,6 +219,7 @@ void Slam::Impl::keep_node(Stamp stamp, const std::string& robot, const ScanPoin
       graph_.nodes.empty() ? params_.T_map_start : graph_.nodes.back().T_map_robot * tracked.T_node_robot;
   node.T_odom_robot = T_odom_robot_;
   node.hits_robot = tracked.hits_robot;
+  node.radar_hits_robot = tracked.radar_hits_robot;
   node.free_ends_robot = points.free_ends_robot;
   PoseEdge edge;
   edge.from = node.id - 1;

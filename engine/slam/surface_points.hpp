@@ -19,10 +19,11 @@ struct SurfacePoint {
 
 /// What one scan or sweep gives to matching and to the map, in the robot frame at the scan's stamp.
 struct ScanPoints {
-  std::vector<SurfacePoint> surface;                           ///< for matching: thinned, at most params.most_points
-  std::shared_ptr<const std::vector<Point2>> hits_robot;       ///< for drawing
-  std::shared_ptr<const std::vector<Point2>> free_ends_robot;  ///< ends of beams known free
-  bool by_radar = false;                                       ///< by the radar alone: matched as RadarParams say
+  std::vector<SurfacePoint> surface;                            ///< for matching: thinned, at most params.most_points
+  std::shared_ptr<const std::vector<Point2>> hits_robot;        ///< for drawing
+  std::shared_ptr<const std::vector<Point2>> radar_hits_robot;  ///< the radar's beside a lidar's, may be null
+  std::shared_ptr<const std::vector<Point2>> free_ends_robot;   ///< ends of beams known free
+  bool by_radar = false;                                        ///< by the radar alone: matched as RadarParams say
 };
 
 /// The robot's motion during a scan, constant: what is used to straighten it.

@@ -99,7 +99,7 @@ TEST(TooNarrowAWay, IsSaidWithItsWidthAndWhatTheRobotNeeds) {
   const auto reason = too_narrow_a_way(map, centre(map, 10, 10), centre(map, 45, 25));
   ASSERT_TRUE(reason);
   EXPECT_NE(reason->find("0.3 m wide"), std::string::npos) << *reason;
-  EXPECT_NE(reason->find("needs 0.5 m"), std::string::npos) << *reason;
+  EXPECT_NE(reason->find("needs 0.6 m"), std::string::npos) << *reason;
 }
 
 TEST(TooNarrowAWay, IsNoReasonWhereTheWayIsWideOrThereIsNone) {

@@ -98,14 +98,86 @@ TEST(Following, IsTheSameInEveryFrame) {
   }
 }
 
-TEST(BlockedAhead, ReachesFurtherTheFasterTheRobot) {
+TEST(IsClear, ReachesFurtherTheFasterTheRobot) {
   const std::vector<Point2> wall{{0.5, -0.1}, {0.5, 0}, {0.5, 0.1}};
-  EXPECT_TRUE(blocked_ahead(wall, 0.5, {}));
-  EXPECT_FALSE(blocked_ahead(wall, 0.1, {}));
+  EXPECT_FALSE(is_clear({0.5, 0}, wall, {}));
+  EXPECT_TRUE(is_clear({0.1, 0}, wall, {}));
   const std::vector<Point2> noise{{0.4, 0}, {0.4, 0.01}};
-  EXPECT_FALSE(blocked_ahead(noise, 0.5, {})) << "two echoes are noise";
-  const std::vector<Point2> behind{{-0.3, 0}, {-0.3, 0.1}, {-0.3, -0.1}};
-  EXPECT_FALSE(blocked_ahead(behind, 0.5, {}));
+  EXPECT_TRUE(is_clear({0.5, 0}, noise, {})) << "two echoes are noise";
+  const std::vector<Point2> behind{{-0.35, 0}, {-0.35, 0.1}, {-0.35, -0.1}};
+  EXPECT_TRUE(is_clear({0.5, 0}, behind, {}));
+  EXPECT_FALSE(is_clear({-0.15, 0}, behind, {})) << "it looks where it goes";
+}
+
+/// The oracle: the disc moved in small steps along the arc.
+bool keeps_clear(const Twist& twist, const Point2& p, const FollowerParams& params) {
+  Pose2 at;
+  for (double t = 0; t < params.stop_time_s; t += 0.002) {
+    at = at * Pose2(twist.speed_mps * 0.002, 0, twist.turn_rate_radps * 0.002);
+    const double away = (at.translation() - p).norm();
+    if (away < params.robot_radius_m + params.margin_m && away < p.norm() - 1e-3) return false;
+  }
+  return true;
+}
+
+TEST(IsClear, AgreesWithMovingTheDiscInSmallSteps) {
+  std::mt19937_64 random(9);
+  const FollowerParams params;
+  int blocked = 0, different = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Twist twist{uniform(random, -0.5, 0.5), uniform(random, -1, 1)};
+    const Point2 p(uniform(random, -0.8, 0.8), uniform(random, -0.8, 0.8));
+    const bool clear = keeps_clear(twist, p, params);
+    blocked += !clear;
+    different += is_clear(twist, {p, p, p}, params) != clear;
+  }
+  EXPECT_GT(blocked, 100);
+  EXPECT_LT(different, 20) << "between two of its steps a centimetre may be missed";
+}
+
+TEST(SteerClear, PassesAJambBesideTheWayInsteadOfScrapingIt) {
+  const FollowerParams params;
+  std::vector<Point2> jamb;
+  for (int i = 0; i < 6; ++i) jamb.emplace_back(0.30 + 0.01 * i, -0.27);
+  const Twist wanted{0.5, 0};
+  ASSERT_FALSE(is_clear(wanted, jamb, params));
+  const auto twist = steer_clear(wanted, jamb, params);
+  ASSERT_TRUE(twist);
+  EXPECT_GT(twist->speed_mps, 0);
+  EXPECT_GT(twist->turn_rate_radps, 0) << "away from it";
+  EXPECT_TRUE(is_clear(*twist, jamb, params));
+}
+
+TEST(SteerClear, LetsBeWhatIsClearAndStandsWhereNothingIs) {
+  const FollowerParams params;
+  const auto same = steer_clear({0.4, 0.2}, {}, params);
+  ASSERT_TRUE(same);
+  EXPECT_EQ(same->speed_mps, 0.4);
+  EXPECT_EQ(same->turn_rate_radps, 0.2);
+  std::vector<Point2> wall;
+  for (int i = -40; i <= 40; ++i) wall.emplace_back(0.30, 0.02 * i);
+  EXPECT_FALSE(steer_clear({0.5, 0}, wall, params));
+  EXPECT_TRUE(steer_clear({0, 0.5}, wall, params)) << "a disc may turn";
+}
+
+TEST(SteerClear, NeverTouchesWhateverStandsAround) {
+  std::mt19937_64 random(10);
+  const FollowerParams params;
+  for (int i = 0; i < 300; ++i) {
+    std::vector<Point2> around;
+    for (int k = 0; k < 12; ++k) {
+      const Point2 p(uniform(random, -0.9, 0.9), uniform(random, -0.9, 0.9));
+      if (p.norm() > params.robot_radius_m) around.insert(around.end(), 3, p);
+    }
+    const auto twist = steer_clear({0.5, uniform(random, -1, 1)}, around, params);
+    if (!twist) continue;
+    for (const Point2& p : around) {
+      Pose2 at;
+      for (double t = 0; t < params.stop_time_s; t += 0.01)
+        at = at * Pose2(twist->speed_mps * 0.01, 0, twist->turn_rate_radps * 0.01);
+      EXPECT_GT((at.translation() - p).norm(), params.robot_radius_m - 0.01);
+    }
+  }
 }
 
 /// A scan of a straight wall `distance_m` ahead; beams of `holes` go on to 8 m.
@@ -124,7 +196,8 @@ TEST(ObstacleWatch, SeesAWallWhileTheRobotDrivesTowardsIt) {
   ObstacleWatch watch;
   Pose2 pose;
   for (int i = 0; i < 8; ++i, pose = pose * Pose2(0.05, 0, 0)) watch.add_scan(wall_scan(i, 1.2 - 0.05 * i), pose);
-  const auto obstacles = watch.obstacles_robot();
+  const Pose2 now(0.05 * 7, 0, 0);
+  const auto obstacles = watch.obstacles_robot(now);
   ASSERT_GT(obstacles.size(), 50u);
   for (const Point2& p : obstacles) EXPECT_NEAR(p.x(), 1.2 - 0.05 * 7, 1e-5);
 }
@@ -132,11 +205,11 @@ TEST(ObstacleWatch, SeesAWallWhileTheRobotDrivesTowardsIt) {
 TEST(ObstacleWatch, ForgetsWhatIsFarAndWhatHasGone) {
   ObstacleWatch watch;
   watch.add_scan(wall_scan(0, 3.0), Pose2());
-  EXPECT_TRUE(watch.obstacles_robot().empty()) << "three metres stop nobody";
+  EXPECT_TRUE(watch.obstacles_robot(Pose2()).empty()) << "three metres stop nobody";
   for (int i = 1; i <= 3; ++i) watch.add_scan(wall_scan(i, 0.8), Pose2());
-  EXPECT_FALSE(watch.obstacles_robot().empty());
+  EXPECT_FALSE(watch.obstacles_robot(Pose2()).empty());
   for (int i = 4; i <= 9; ++i) watch.add_scan(wall_scan(i, 8.0), Pose2());
-  EXPECT_TRUE(watch.obstacles_robot().empty());
+  EXPECT_TRUE(watch.obstacles_robot(Pose2()).empty());
 }
 
 TEST(ObstacleWatch, TakesEchoesThatOthersPassThroughForSmoke) {
@@ -148,7 +221,7 @@ TEST(ObstacleWatch, TakesEchoesThatOthersPassThroughForSmoke) {
       if (uniform_index(random, 6) == 0) range = static_cast<float>(uniform(random, 0.5, 1.1));
     watch.add_scan(scan, Pose2());
   }
-  EXPECT_LT(watch.obstacles_robot().size(), 4u);
+  EXPECT_LT(watch.obstacles_robot(Pose2()).size(), 4u);
 }
 
 TEST(ObstacleParams, NameWhatIsOutOfRange) {

@@ -238,7 +238,7 @@ TEST(Piloting, BacksOffFromWhatStandsInTheWayAndGivesUpInTheEnd) {
   bool backed = false, blocked = false;
   PilotState state = PilotState::kIdle;
   std::string reason;
-  for (int i = 0; i < 400 && state != PilotState::kGivenUp; ++i) {
+  for (int i = 0; i < 700 && state != PilotState::kGivenUp; ++i) {
     const PilotOutput out = drive.step(before);
     state = out.state, reason = out.reason;
     backed = backed || out.twist.speed_mps < 0;
@@ -251,6 +251,80 @@ TEST(Piloting, BacksOffFromWhatStandsInTheWayAndGivesUpInTheEnd) {
   EXPECT_EQ(drive.step().twist.speed_mps, 0) << "and stands until it gets another target";
   drive.pilot.set_target(Point2(2, 3));
   EXPECT_NE(drive.step().state, PilotState::kGivenUp);
+}
+
+/// Seconds until the pilot gives up before something that never goes away.
+double seconds_until_given_up(Drive& drive, const std::vector<Point2>& before) {
+  for (int i = 0; i < 1200; ++i)
+    if (drive.step(before).state == PilotState::kGivenUp) return 0.1 * i;
+  return 1e9;
+}
+
+TEST(Piloting, SaysWithinAMinuteThatItCannotGetOnThoughItBacksOffAndPlansAgain) {
+  const std::vector<Point2> before{{0.35, -0.1}, {0.35, 0}, {0.35, 0.1}, {0.35, 0.05}};
+  Drive standing(half_seen());
+  standing.pilot.set_target(Point2(7, 3));
+  EXPECT_LT(seconds_until_given_up(standing, before), 60);
+}
+
+TEST(Piloting, AGoalThatMovesWithTheMapDoesNotMakeItWaitForEver) {
+  const std::vector<Point2> before{{0.35, -0.1}, {0.35, 0}, {0.35, 0.1}, {0.35, 0.05}};
+  Drive drive(half_seen());
+  drive.pilot.set_target(Point2(7, 3));
+  PilotState state = PilotState::kIdle;
+  int i = 0;
+  for (; i < 1200 && state != PilotState::kGivenUp; ++i) {
+    if (i % 10 == 0) drive.pilot.move_target(Point2(7, i % 20 == 0 ? 3.06 : 3.0));
+    state = drive.step(before).state;
+  }
+  EXPECT_EQ(state, PilotState::kGivenUp);
+}
+
+TEST(Piloting, GoesRoundWhatItMetAndItsMapDoesNotShow) {
+  Drive drive(half_seen());
+  drive.pilot.set_target(Point2(7, 3));
+  std::vector<Point2> fence_map;  // across the straight way, open at one end
+  for (double y = 0.1; y < 4.2; y += 0.03) fence_map.emplace_back(2.6, y);
+  PilotState state = PilotState::kIdle;
+  double nearest = 1e9;
+  for (int i = 0; i < 1500 && state != PilotState::kArrived; ++i) {
+    std::vector<Point2> seen;
+    for (const Point2& p : fence_map) {
+      nearest = std::min(nearest, (p - drive.pose.translation()).norm());
+      if (const Point2 p_robot = drive.pose.inverse() * p; p_robot.norm() < 1.2) seen.push_back(p_robot);
+    }
+    state = drive.step(seen).state;
+    if (state == PilotState::kGivenUp) break;
+  }
+  EXPECT_EQ(state, PilotState::kArrived);
+  EXPECT_GT(nearest, 0.25);
+}
+
+TEST(Piloting, DrivesSlowlyWhereTheLidarIsBlind) {
+  for (const double share : {0.0, 0.5, 1.0}) {
+    Pilot pilot{PilotParams{}};
+    pilot.set_map(std::make_shared<const CostMap>(open_floor(100, 60)));
+    pilot.set_target(Point2(8, 3));
+    const double speed = pilot.step(0, Pose2(1, 3, 0), {}, share).twist.speed_mps;
+    if (share == 0) {
+      EXPECT_NEAR(speed, 0.5, 0.01);
+    } else {
+      EXPECT_LT(speed, 0.45) << share;
+    }
+    EXPECT_GE(speed, 0.25 - 1e-9) << "slow, but on";
+  }
+}
+
+TEST(MapsWithWhatWasMet, BlockItAndNothingElse) {
+  const CostMap map = open_floor(60, 60);
+  const CostMap with = map.with_blocked({{3.05, 3.05}, {1e6, 0}, {-5, 2}});
+  EXPECT_EQ(with.ground({30, 30}), Ground::kBlocked);
+  EXPECT_EQ(with.clearance_m({30, 30}), 0);
+  EXPECT_NEAR(with.clearance_m({34, 30}), 0.4, 1e-6);
+  int changed = 0;
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 60; ++x) changed += with.ground({x, y}) != map.ground({x, y});
+  EXPECT_EQ(changed, 1);
 }
 
 TEST(Piloting, ParametersNameWhatIsOutOfRange) {

@@ -184,10 +184,11 @@ TEST(Frontier, LooksIntoTheRoomNobodySaw) {
 
 TEST(Follower, StopsForEchoesAheadButNotBeside) {
   const FollowerParams params;
-  EXPECT_TRUE(blocked_ahead({{0.4, 0}, {0.4, 0.05}, {0.4, -0.05}}, 0.5, params));
-  EXPECT_FALSE(blocked_ahead({{0.4, 0}, {0.4, 0.05}}, 0.5, params)) << "two echoes are noise";
-  EXPECT_FALSE(blocked_ahead({{0.4, 0.5}, {0.4, 0.55}, {0.4, -0.5}}, 0.5, params));
-  EXPECT_FALSE(blocked_ahead({{-0.4, 0}, {-0.4, 0.05}, {-0.4, -0.05}}, 0.5, params));
+  const Twist on{0.5, 0};
+  EXPECT_FALSE(is_clear(on, {{0.4, 0}, {0.4, 0.05}, {0.4, -0.05}}, params));
+  EXPECT_TRUE(is_clear(on, {{0.4, 0}, {0.4, 0.05}}, params)) << "two echoes are noise";
+  EXPECT_TRUE(is_clear(on, {{0.4, 0.5}, {0.4, 0.55}, {0.4, -0.5}}, params));
+  EXPECT_TRUE(is_clear(on, {{-0.4, 0}, {-0.4, 0.05}, {-0.4, -0.05}}, params));
 }
 
 /// Drives a point robot along whatever the pilot says, 20 Hz.
