@@ -64,11 +64,17 @@ void WheelError::learn(const Pose2& by_wheels, const Pose2& matched, double seco
   turn_square_ = kept * turn_square_ + by_wheels.heading() * by_wheels.heading();
 }
 
-Twist2 WheelError::corrected(const Twist2& by_wheels) const {
+Twist2 WheelError::corrected(const Twist2& by_wheels, const Twist2& last) const {
   const std::complex<double> velocity =
       as_complex(by_wheels.velocity_mps) * (way_product_ + kWayPrior_m2) / (way_square_ + kWayPrior_m2);
-  const double turn = (turn_product_ + kTurnPrior_rad2) / (turn_square_ + kTurnPrior_rad2);
-  return {{velocity.real(), velocity.imag()}, turn * by_wheels.turn_radps};
+  const double turn = (turn_product_ + kTurnPrior_rad2) / (turn_square_ + kTurnPrior_rad2) * by_wheels.turn_radps;
+  // Wheels whose slip changes at once are misjudged by a multiple.
+  const auto between = [](double value, double a, double b) {
+    return std::clamp(value, std::min(a, b), std::max(a, b));
+  };
+  return {{between(velocity.real(), by_wheels.velocity_mps.x(), last.velocity_mps.x()),
+           between(velocity.imag(), by_wheels.velocity_mps.y(), last.velocity_mps.y())},
+          between(turn, by_wheels.turn_radps, last.turn_radps)};
 }
 
 Twist2 smoothed(const std::optional<Twist2>& before, const Twist2& measured, double seconds) {

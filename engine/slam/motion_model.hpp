@@ -49,7 +49,9 @@ class WheelError {
  public:
   /// A step as the wheels had it and as the match found it; `seconds` long, or a little longer.
   void learn(const Pose2& by_wheels, const Pose2& matched, double seconds);
-  Twist2 corrected(const Twist2& by_wheels) const;
+  /// Between what the wheels say and how the robot last moved: a scan is never bent more than by the wheels alone.
+  /// @param last  matched motion, smoothed
+  Twist2 corrected(const Twist2& by_wheels, const Twist2& last) const;
 
  private:
   // Least squares of matched = ratio * by_wheels; of the way the ratio is complex: it turns and scales.

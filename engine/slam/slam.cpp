@@ -93,7 +93,8 @@ class Slam::Impl {
   void keep_node(Stamp stamp, const std::string& robot, const ScanPoints& points, const FrontEnd::Tracked& tracked);
   void count(ScanFate fate);
   Twist2 twist_for_straightening() const {
-    if (const auto by_wheels = odometry_.twist()) return wheel_error_.corrected(*by_wheels);
+    if (const auto by_wheels = odometry_.twist())
+      return twist_ ? wheel_error_.corrected(*by_wheels, *twist_) : *by_wheels;
     return twist_.value_or(Twist2{});
   }
 
