@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace smokemap {
@@ -9,6 +10,8 @@ namespace {
 
 constexpr std::size_t kMostDrawings = 12;
 constexpr double kFarReach = 4.5;     ///< times the widest opening: how far parts of one floor may be apart
+constexpr double kWindowReach = 3.5;  ///< the same for a piece of wall inside the drawing, in line with another
+constexpr int kLeastPiers = 3;        ///< of a front: pieces of one line
 constexpr double kLeastScore = 0.02;  ///< of the best drawing's: below are frames, legends and words
 
 class Groups {
@@ -35,17 +38,20 @@ void append(std::vector<InkStroke>& to, const std::vector<InkStroke>& more) {
   to.insert(to.end(), more.begin(), more.end());
 }
 
-/// Letters are short, frames and boxes of text are thin and have no partitions.
+/// Letters are short, frames and boxes of text are thin and have neither partitions nor windows.
 bool could_be_a_wing(const std::vector<InkStroke>& walls, const StrokeRegion& region, double thickness_px,
                      double side_px) {
-  double longest = 0, thickness = 0, length = 0;
+  double longest = region.longest_line, thickness = 0, length = 0;
+  std::map<int, int> pieces_of_line;
+  int pieces = 0;
   for (const std::size_t m : region.members) {
+    if (walls[m].line >= 0) pieces = std::max(pieces, ++pieces_of_line[walls[m].line]);
     longest = std::max(longest, walls[m].length());
     thickness += walls[m].thickness_px * walls[m].length();
     length += walls[m].length();
   }
-  return longest > 0.05 * side_px && region.junctions > static_cast<int>(region.members.size()) &&
-         thickness > 0.6 * thickness_px * length;
+  const bool built = region.junctions > static_cast<int>(region.members.size()) || pieces >= kLeastPiers;
+  return longest > 0.05 * side_px && built && thickness > 0.6 * thickness_px * length;
 }
 
 /// The two carry each other on: in line, with their ends facing each other.
@@ -57,12 +63,15 @@ bool in_line(const InkStroke& one, const InkStroke& two, double reach_px) {
          gap_between(one.axis, two.axis) < reach_px;
 }
 
+bool of_one_line(const InkStroke& one, const InkStroke& two) { return one.line >= 0 && one.line == two.line; }
+
+bool alike(double one, double two) { return std::min(one, two) > 0.7 * std::max(one, two); }
+
 /// Parts of one floor far apart: the piece carries on walls of the building in two directions. (Another floor on the
 /// sheet is at most lined up in one.)
 /// @param least_px  shorter walls may line up by chance, as words do
 bool lines_up_twice(const std::vector<InkStroke>& piece, const std::vector<InkStroke>& building, double reach_px,
                     double least_px) {
-  const auto alike = [](double one, double two) { return std::min(one, two) > 0.7 * std::max(one, two); };
   std::vector<double> headings;
   for (const auto& m : piece)
     for (const auto& b : building)
@@ -92,13 +101,21 @@ Drawing take_best(std::vector<InkStroke>& walls, double thickness_px, double rea
       if (adopted[r]) continue;
       const Point2 new_low = low.cwiseMin(regions[r].low), new_high = high.cwiseMax(regions[r].high);
       const bool grows = (new_high - new_low).prod() > 1.15 * (high - low).prod();
-      const bool carries_on =
-          any_pair(regions[r], [&](const InkStroke& m, const InkStroke& b) { return in_line(m, b, 1.3 * reach_px); });
+      const bool carries_on = any_pair(regions[r], [&](const InkStroke& m, const InkStroke& b) {
+        return of_one_line(m, b) || in_line(m, b, 1.3 * reach_px);
+      });
       const auto far = [&] {
         return lines_up_twice(members_of(walls, regions[r].members), building, kFarReach * reach_px, 0.05 * side_px);
       };
-      if (!carries_on && !(regions[r].length > 0.1 * side_px && far())) {
-        if (regions[r].length < 0.03 * side_px) continue;
+      // A post between two windows.
+      const auto inside = [&] {
+        return !grows && any_pair(regions[r], [&](const InkStroke& m, const InkStroke& b) {
+          return alike(m.thickness_px, b.thickness_px) && b.length() > 2 * b.thickness_px &&
+                 in_line(b, m, kWindowReach * reach_px);
+        });
+      };
+      if (!carries_on && !(regions[r].length > 0.1 * side_px && far()) && !inside()) {
+        if (std::max(regions[r].length, regions[r].longest_line) < 0.03 * side_px) continue;
         if (grows && !could_be_a_wing(walls, regions[r], thickness_px, side_px)) continue;
         if (!any_pair(regions[r],
                       [&](const InkStroke& m, const InkStroke& b) { return gap_between(m.axis, b.axis) < reach_px; }))
@@ -139,11 +156,14 @@ std::vector<StrokeRegion> connected_regions(const std::vector<InkStroke>& stroke
       const bool continues = turn < radians(5) && std::abs(signed_line_distance(one.axis, two.axis.midpoint())) < touch;
       if (gap <= touch || (continues && gap <= bridge_px)) groups.join(i, j);
     }
+  std::map<int, double> line_length;
+  for (const auto& s : strokes) line_length[s.line] += s.line >= 0 ? s.length() : 0;
   std::vector<StrokeRegion> by_root(strokes.size());
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     auto& region = by_root[groups.of(i)];
     region.members.push_back(i);
     if (strokes[i].length() > 0.015 * side_px) region.length += strokes[i].length();
+    region.longest_line = std::max(region.longest_line, line_length[strokes[i].line]);
     region.junctions += junctions[i];
     for (const Point2& end : {strokes[i].axis.a, strokes[i].axis.b})
       region.low = region.low.cwiseMin(end), region.high = region.high.cwiseMax(end);

@@ -13,6 +13,7 @@ namespace smokemap {
 struct StrokeRegion {
   std::vector<std::size_t> members;
   double length = 0;
+  double longest_line = 0;  ///< pieces of it may belong to other regions
   int junctions = 0;
   Point2 low = Point2::Constant(1e300), high = Point2::Constant(-1e300);
   /// Letters and words have many short strokes in a small space, frames are large and empty.

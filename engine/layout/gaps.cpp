@@ -5,6 +5,11 @@
 #include <set>
 
 namespace smokemap {
+namespace {
+
+constexpr double kCarriesOn = 0.7;  ///< cosine of the turn between two walls of which one carries on the other
+
+}  // namespace
 
 std::vector<LooseEnd> loose_ends(const LayoutMap& map) {
   std::vector<LooseEnd> ends;
@@ -19,8 +24,30 @@ std::vector<LooseEnd> loose_ends(const LayoutMap& map) {
   return ends;
 }
 
-std::vector<Gap> gaps_ahead(const LayoutMap& map, double thickness_px, double reach_px) {
-  const auto ends = loose_ends(map);
+std::vector<LooseEnd> joined_ends(const LayoutMap& map) {
+  std::vector<LooseEnd> ends;
+  for (std::size_t w = 0; w < map.walls.size(); ++w) {
+    const Segment2 s = map.wall_px(static_cast<int>(w));
+    if (s.length() < 1e-9) continue;
+    for (const bool at_b : {false, true}) {
+      const int corner = at_b ? map.walls[w].corner_b : map.walls[w].corner_a;
+      const Point2 outward = at_b ? s.direction() : Point2(-s.direction());
+      bool alone = true, carried_on = false;
+      for (std::size_t j = 0; j < map.walls.size(); ++j) {
+        const auto& other = map.walls[j];
+        if (j == w || (other.corner_a != corner && other.corner_b != corner)) continue;
+        const Segment2 o = map.wall_px(static_cast<int>(j));
+        alone = false;
+        carried_on |= (other.corner_a == corner ? o.direction() : Point2(-o.direction())).dot(outward) > kCarriesOn;
+      }
+      if (!alone && !carried_on) ends.push_back({corner, static_cast<int>(w), at_b ? s.b : s.a, outward});
+    }
+  }
+  return ends;
+}
+
+std::vector<Gap> gaps_ahead(const LayoutMap& map, const std::vector<LooseEnd>& ends, double thickness_px,
+                            double reach_px) {
   std::vector<Gap> gaps;
   std::set<std::pair<int, int>> seen;
   for (const auto& end : ends) {
@@ -37,7 +64,8 @@ std::vector<Gap> gaps_ahead(const LayoutMap& map, double thickness_px, double re
     }
     const Segment2 ray{end.p + 0.5 * end.outward, end.p + best * end.outward};
     for (std::size_t w = 0; w < map.walls.size(); ++w) {
-      if (static_cast<int>(w) == end.wall) continue;
+      if (static_cast<int>(w) == end.wall || map.walls[w].corner_a == end.corner || map.walls[w].corner_b == end.corner)
+        continue;
       Segment2 wall = map.wall_px(static_cast<int>(w));
       if (line_angle_between(wall.heading(), ray.heading()) < 0.6) continue;
       const Point2 more = 0.6 * thickness_px * wall.direction();

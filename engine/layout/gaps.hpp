@@ -15,6 +15,8 @@ struct LooseEnd {
   Point2 outward = Point2::Zero();  ///< unit, the way the wall would go on
 };
 std::vector<LooseEnd> loose_ends(const LayoutMap& map);
+/// An end of a wall that meets others, none of which carries it on.
+std::vector<LooseEnd> joined_ends(const LayoutMap& map);
 
 /// What lies between a loose end and the nearest thing straight ahead.
 struct Gap {
@@ -25,7 +27,12 @@ struct Gap {
   double thickness_px = 0;
 };
 /// Every pair of facing ends once. @param reach_px  things further away are not the other side of an opening
-std::vector<Gap> gaps_ahead(const LayoutMap& map, double thickness_px, double reach_px);
+std::vector<Gap> gaps_ahead(const LayoutMap& map, const std::vector<LooseEnd>& ends, double thickness_px,
+                            double reach_px);
+
+/// Draws the wall across the gap. One that lies across its way is cut there; earlier cuts since the gap was found do no
+/// harm.
+void carry_on(LayoutMap& map, const Gap& gap, double thickness_px, double confidence);
 
 /// Share of the segment that lies on the mask (CV_8UC1, not zero = on it).
 double covered_share(const Segment2& s, const cv::Mat& mask);

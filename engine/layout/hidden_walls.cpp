@@ -14,12 +14,14 @@ constexpr double kHiddenConfidence = 0.5;
 constexpr double kHiddenShare = 0.55;  ///< of the missing piece must lie under signs
 constexpr double kLeastTurn = 0.5;     ///< rad, between the walls of a hidden corner
 
-void add_hidden(LayoutMap& map, int a, int b, double thickness_px) {
+void join(LayoutMap& map, int a, int b, double thickness_px, double confidence) {
   if (a == b) return;
-  map.walls.push_back({a, b, thickness_px, kHiddenConfidence, false});
+  map.walls.push_back({a, b, thickness_px, confidence, false});
   map.corners[static_cast<std::size_t>(a)].degree += 1;
   map.corners[static_cast<std::size_t>(b)].degree += 1;
 }
+
+void add_hidden(LayoutMap& map, int a, int b, double thickness_px) { join(map, a, b, thickness_px, kHiddenConfidence); }
 
 /// The corner at a place of a wall: one of its ends if near, else the wall is cut there.
 int corner_on_wall(LayoutMap& map, int wall, const Point2& p, double near_px) {
@@ -67,7 +69,7 @@ std::optional<HiddenCorner> corner_between(const LooseEnd& one, const LooseEnd& 
 }
 
 void join_in_line(LayoutMap& map, const cv::Mat& covered, double thickness_px, double reach_px) {
-  for (const auto& gap : gaps_ahead(map, thickness_px, reach_px))
+  for (const auto& gap : gaps_ahead(map, loose_ends(map), thickness_px, reach_px))
     if (gap.corner_b >= 0 && covered_share(gap.segment, covered) > kHiddenShare)
       add_hidden(map, gap.corner_a, gap.corner_b, gap.thickness_px);
 }
@@ -104,18 +106,22 @@ void join_corners(LayoutMap& map, const cv::Mat& covered, double thickness_px, d
 }
 
 void join_to_walls(LayoutMap& map, const cv::Mat& covered, double thickness_px, double reach_px) {
-  for (const auto& gap : gaps_ahead(map, thickness_px, reach_px)) {
-    if (gap.wall_b < 0 || covered_share(gap.segment, covered) <= kHiddenShare) continue;
-    // An earlier cut may have left the place to the second half of the wall.
-    int wall = gap.wall_b;
-    for (std::size_t w = 0; w < map.walls.size(); ++w)
-      if (distance(map.wall_px(static_cast<int>(w)), gap.segment.b) < distance(map.wall_px(wall), gap.segment.b) - 1e-6)
-        wall = static_cast<int>(w);
-    add_hidden(map, gap.corner_a, corner_on_wall(map, wall, gap.segment.b, thickness_px), gap.thickness_px);
-  }
+  for (const auto& gap : gaps_ahead(map, loose_ends(map), thickness_px, reach_px))
+    if (gap.wall_b >= 0 && covered_share(gap.segment, covered) > kHiddenShare)
+      carry_on(map, gap, thickness_px, kHiddenConfidence);
 }
 
 }  // namespace
+
+void carry_on(LayoutMap& map, const Gap& gap, double thickness_px, double confidence) {
+  if (gap.corner_b >= 0) return join(map, gap.corner_a, gap.corner_b, gap.thickness_px, confidence);
+  // An earlier cut may have left the place to the second half of the wall.
+  int wall = gap.wall_b;
+  for (std::size_t w = 0; w < map.walls.size(); ++w)
+    if (distance(map.wall_px(static_cast<int>(w)), gap.segment.b) < distance(map.wall_px(wall), gap.segment.b) - 1e-6)
+      wall = static_cast<int>(w);
+  join(map, gap.corner_a, corner_on_wall(map, wall, gap.segment.b, thickness_px), gap.thickness_px, confidence);
+}
 
 void repair_hidden(LayoutMap& map, const cv::Mat& covered, double thickness_px, double reach_px) {
   join_in_line(map, covered, thickness_px, reach_px);

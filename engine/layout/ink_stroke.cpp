@@ -13,6 +13,10 @@
 namespace smokemap {
 namespace {
 
+constexpr double kSampleStep = 2;  // px along an edge
+constexpr double kLeastRunPx = 8;  // shorter stretches of another width are crossings and blots
+constexpr double kLeastBreakPx = 8, kLeastBreakWidths = 2;
+
 struct Ink {
   const cv::Mat& darkness;
   cv::Mat mask;        ///< CV_8UC1, 255 = ink
@@ -55,44 +59,86 @@ struct Seed {
   double width = 0;
 };
 
-/// Width of the ink behind an edge, and the centre line it belongs to.
-std::optional<Seed> seed_behind(const Ink& ink, const Segment2& edge) {
-  const double length = edge.length();
-  const Point2 u = edge.direction();
-  Point2 n = edge.normal();
-  std::vector<double> widths, middles;
+/// The ink behind one sample of an edge.
+struct EdgeSample {
+  double s = 0;  ///< along the edge
+  double middle = 0, width = 0;
+};
+
+/// Unit normal of the edge that points into the dark side.
+Point2 dark_side(const Ink& ink, const Segment2& edge) {
+  const Point2 u = edge.direction(), n = edge.normal();
   double left = 0, right = 0;
-  for (double s = 0.5; s < length; s += 2) {
+  for (double s = 0.5; s < edge.length(); s += kSampleStep) {
     const Point2 p = edge.a + s * u;
     left += ink.at(p + 2 * n);
     right += ink.at(p - 2 * n);
   }
-  if (right > left) n = -n;
-  for (double s = 0.5; s < length; s += 2) {
-    const Point2 p = edge.a + s * u;
+  return right > left ? Point2(-n) : n;
+}
+
+std::vector<EdgeSample> samples_behind(const Ink& ink, const Segment2& edge, const Point2& n) {
+  std::vector<EdgeSample> samples;
+  for (double s = 0.5; s < edge.length(); s += kSampleStep) {
+    const Point2 p = edge.a + s * edge.direction();
     double begin = -2;
     while (begin <= 3 && !ink.inked(p + begin * n)) begin += 1;
     if (begin > 3) continue;
     double end = begin;
     while (end - begin <= ink.cap_px && ink.inked(p + (end + 1) * n)) end += 1;
     if (end - begin > ink.cap_px) continue;
-    widths.push_back(end - begin + 1);
-    middles.push_back(0.5 * (begin + end));
+    samples.push_back({s, 0.5 * (begin + end), end - begin + 1});
   }
-  if (widths.size() < 2 || static_cast<double>(widths.size()) * 4 < length) return std::nullopt;
-  const auto middle_of = [](std::vector<double>& values) {
-    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), nth, values.end());
-    return *nth;
+  return samples;
+}
+
+double median(std::vector<double> values) {
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+/// Runs of samples of like width: one edge may belong to a wall and to the frame of the window that carries it on.
+std::vector<std::vector<EdgeSample>> runs_of_width(const std::vector<EdgeSample>& samples) {
+  std::vector<std::vector<EdgeSample>> runs;
+  double usual = 0;
+  for (const auto& sample : samples) {
+    const bool like = !runs.empty() && sample.width < 1.6 * usual + 1 && usual < 1.6 * sample.width + 1;
+    if (!like) runs.emplace_back();
+    auto& run = runs.back();
+    run.push_back(sample);
+    usual += (sample.width - usual) / std::min<double>(static_cast<double>(run.size()), 8);
+  }
+  return runs;
+}
+
+/// Widths of the ink behind an edge, and the centre lines it belongs to, by how much of the edge is theirs: one over
+/// the whole edge, and one for every stretch of another width that is long enough to be a wall's.
+std::vector<Seed> seeds_behind(const Ink& ink, const Segment2& edge) {
+  const Point2 n = dark_side(ink, edge), u = edge.direction();
+  const auto samples = samples_behind(ink, edge, n);
+  if (samples.size() < 2 || static_cast<double>(samples.size()) * 2 * kSampleStep < edge.length()) return {};
+  const auto seed_of = [&](const std::vector<EdgeSample>& of, double from, double to) {
+    std::vector<double> widths, middles;
+    for (const auto& sample : of) widths.push_back(sample.width), middles.push_back(sample.middle);
+    const double offset = median(middles);
+    return Seed{{edge.a + from * u + offset * n, edge.a + to * u + offset * n}, median(widths)};
   };
-  const double offset = middle_of(middles);
-  return Seed{{edge.a + offset * n, edge.b + offset * n}, middle_of(widths)};
+  std::vector<Seed> seeds{seed_of(samples, 0, edge.length())};
+  for (const auto& run : runs_of_width(samples)) {
+    const double length = run.back().s - run.front().s + kSampleStep;
+    const double width = seed_of(run, 0, 1).width, whole = seeds.front().width;
+    if (width < 1.6 * whole + 1 && whole < 1.6 * width + 1) continue;
+    if (length >= std::max(kLeastRunPx, 0.7 * width)) seeds.push_back(seed_of(run, run.front().s, run.back().s));
+  }
+  return seeds;
 }
 
 struct Walk {
   double low = 0, high = 0;  ///< clean extent along the axis, from its point a
   std::vector<Point2> middles;
-  int present = 0;
+  std::vector<double> clean;  ///< where the cross-section is the stroke's own
+  std::vector<double> held;   ///< there, and where wider ink crosses
 };
 
 /// Follows the axis both ways while the cross-section holds. Wider ink (a crossing wall) is walked through, not
@@ -110,10 +156,11 @@ Walk walk_axis(const Ink& ink, const Segment2& axis, double width) {
     gap = 0;
     const bool clean =
         cut->width <= 1.5 * width + 1 && cut->width >= 0.5 * width - 1 && std::abs(cut->middle) <= slack + 0.5;
+    if (clean || cut->width > width) walk.held.push_back(s);
     if (!clean) return wide += 1, true;
     wide = 0;
     edge = s;
-    walk.present += 1;
+    walk.clean.push_back(s);
     walk.middles.push_back(axis.a + s * u + cut->middle * n);
     return true;
   };
@@ -128,7 +175,25 @@ Walk walk_axis(const Ink& ink, const Segment2& axis, double width) {
       if (s < -20000 || s > 20000) break;
     }
   }
+  std::sort(walk.clean.begin(), walk.clean.end());
+  std::sort(walk.held.begin(), walk.held.end());
   return walk;
+}
+
+/// The walk without the stretches where its ink is missing or thinner: windows, of which the edge that led here is a
+/// frame. Short ones are slips of the pen.
+std::vector<Segment2> pieces_of_walk(const Walk& walk, const Segment2& axis, double width) {
+  const double least_break = std::max(kLeastBreakPx, kLeastBreakWidths * width);
+  std::vector<Segment2> pieces;
+  const Point2 u = axis.direction();
+  double from = walk.low, last = walk.low;
+  for (const double s : walk.held) {
+    if (s < walk.low || s > walk.high) continue;
+    if (s - last > least_break) pieces.push_back({axis.a + from * u, axis.a + last * u}), from = s;
+    last = s;
+  }
+  pieces.push_back({axis.a + from * u, axis.a + walk.high * u});
+  return pieces;
 }
 
 /// Total least squares through the middles.
@@ -164,8 +229,8 @@ void measure(const Ink& ink, InkStroke& stroke, double width) {
   for (double s = 0.5; s < length; s += step) {
     const Point2 p = stroke.axis.a + s * u;
     const auto cut = cross_section(ink, p, n, std::max(1.0, 0.35 * width));
-    samples += 1;
     if (!cut) continue;
+    samples += 1;
     dark += ink.at(p + cut->middle * n) / 255.0;
     if (cut->width > 1.5 * width + 1) continue;
     double sum = 0, peak = 0.8 * ink.black;
@@ -191,28 +256,44 @@ class Tracer {
       : ink_(ink), params_(params), claimed_(ink.darkness.size(), CV_16UC1, cv::Scalar(0)) {}
 
   void add(const Segment2& edge) {
-    if (strokes_.size() >= 65000) return;
-    const auto seed = seed_behind(ink_, edge);
-    if (!seed || taken(seed->axis)) return;
-    Segment2 axis = seed->axis;
-    Walk walk = walk_axis(ink_, axis, seed->width);
-    if (const auto fitted = fit_axis(walk.middles, axis.direction())) {
-      axis = *fitted;
-      if (axis.length() < 1) return;
-      walk = walk_axis(ink_, axis, seed->width);
-    }
-    const double length = walk.high - walk.low;
-    if (length < 3 || taken({axis.a + walk.low * axis.direction(), axis.a + walk.high * axis.direction()})) return;
-    InkStroke stroke;
-    stroke.axis = {axis.a + walk.low * axis.direction(), axis.a + walk.high * axis.direction()};
-    stroke.coverage = std::min(1.0, walk.present / (length + 1));
-    measure(ink_, stroke, seed->width);
-    claim(stroke, seed->width);
-    strokes_.push_back(stroke);
+    for (const auto& seed : seeds_behind(ink_, edge)) follow(seed);
   }
   std::vector<InkStroke> take() { return std::move(strokes_); }
 
  private:
+  void follow(const Seed& seed) {
+    if (strokes_.size() >= 65000 || taken(seed.axis)) return;
+    Segment2 axis = seed.axis;
+    Walk walk = walk_axis(ink_, axis, seed.width);
+    if (const auto fitted = fit_axis(walk.middles, axis.direction())) {
+      axis = *fitted;
+      if (axis.length() < 1) return;
+      walk = walk_axis(ink_, axis, seed.width);
+    }
+    if (walk.high - walk.low < 3 || taken(part_of(axis, walk.low, walk.high))) return;
+    const auto within = [](const std::vector<double>& places, double from, double to) {
+      return static_cast<double>(std::upper_bound(places.begin(), places.end(), to + 0.5) -
+                                 std::lower_bound(places.begin(), places.end(), from - 0.5));
+    };
+    const double clean =
+        within(walk.clean, walk.low, walk.high) / std::max(1.0, within(walk.held, walk.low, walk.high));
+    const int line = static_cast<int>(strokes_.size());
+    for (const auto& piece : pieces_of_walk(walk, axis, seed.width)) {
+      if (piece.length() < 3) continue;
+      InkStroke stroke;
+      stroke.axis = piece;
+      stroke.line = line;
+      const double from = (piece.a - axis.a).dot(axis.direction()), to = from + piece.length();
+      stroke.coverage = std::min(1.0, clean * within(walk.held, from, to) / (piece.length() + 1));
+      measure(ink_, stroke, seed.width);
+      claim(stroke, seed.width);
+      strokes_.push_back(stroke);
+    }
+  }
+  static Segment2 part_of(const Segment2& axis, double from, double to) {
+    return {axis.a + from * axis.direction(), axis.a + to * axis.direction()};
+  }
+
   /// Most of it lies on a stroke of like direction.
   bool taken(const Segment2& axis) const {
     const double length = axis.length();

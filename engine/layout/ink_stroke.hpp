@@ -15,6 +15,7 @@ struct InkStroke {
   double coverage = 0;      ///< share of the axis where ink of that width lies
   double darkness = 0;      ///< mean along the axis, 0..1
   bool hollow = false;      ///< two thin lines with paper between
+  int line = -1;            ///< the same for pieces of one line, between which it is thinner or missing: windows
 
   double length() const { return axis.length(); }
 };

@@ -20,7 +20,7 @@ Result<Ok> LayoutParams::validate() const {
       .in_range("merge_angle_deg", merge_angle_deg, 0.1, 20)
       .in_range("snap_walls", snap_walls, 0.1, 10)
       .in_range("max_opening_share", max_opening_share, 0.005, 0.5)
-      .positive("door_width_m", door_width_m)
+      .in_range("door_width_m", door_width_m, 0.3, 5)
       .in_range("door_width_sigma", door_width_sigma, 0.01, 2)
       .result();
 }

@@ -3,21 +3,35 @@
 #include <algorithm>
 #include <cmath>
 
+#include "layout/edit.hpp"
 #include "layout/gaps.hpp"
+#include "layout/wall_graph.hpp"
+#include "layout/wall_strokes.hpp"
 
 namespace smokemap {
 namespace {
 
-/// Length of the gap along which some thin line runs within a wall's width.
-double lined_share(const Segment2& gap, const std::vector<InkStroke>& thin, double thickness_px) {
-  double lined = 0;
+constexpr double kWidestWindow = 0.3;  ///< of the plan's long side
+constexpr double kWidestTread = 0.02;  ///< of the plan's long side: lines so close in a row are stairs and shelves
+constexpr double kAside = 0.6;         ///< rad, between a wall and a line that leads aside from its end
+constexpr double kLined = 0.6;         ///< of a gap no wider than doors are
+constexpr double kFramed = 0.8;        ///< of a wide gap must have a frame drawn along it
+
+/// Share of the gap along which thin lines run within a wall's width.
+/// @param side  -1 or 1: only those to that side of its middle; 0: all
+double lined_share(const Segment2& gap, const std::vector<InkStroke>& thin, double thickness_px, int side = 0) {
+  std::vector<std::pair<double, double>> lined;
   for (const auto& s : thin) {
     if (line_angle_between(s.axis.heading(), gap.heading()) > radians(6)) continue;
-    if (std::abs(signed_line_distance(gap, s.axis.midpoint())) > 0.8 * thickness_px) continue;
+    const double aside = signed_line_distance(gap, s.axis.midpoint());
+    if (std::abs(aside) > 0.8 * thickness_px || (side != 0 && side * aside < 0.2 * thickness_px)) continue;
     const double a = std::clamp(along(gap, s.axis.a), 0.0, 1.0), b = std::clamp(along(gap, s.axis.b), 0.0, 1.0);
-    lined = std::max(lined, std::abs(b - a));
+    lined.emplace_back(std::min(a, b), std::max(a, b));
   }
-  return lined;
+  std::sort(lined.begin(), lined.end());
+  double share = 0, until = 0;
+  for (const auto& [from, to] : lined) share += std::max(0.0, to - std::max(from, until)), until = std::max(until, to);
+  return share;
 }
 
 /// A thin line about as long as the gap stands at one of its ends.
@@ -33,6 +47,80 @@ bool has_leaf(const Segment2& gap, const std::vector<InkStroke>& thin, double th
   });
 }
 
+/// The wall at the place, or -1.
+int wall_near(const LayoutMap& map, const Point2& p, double reach_px, int except = -1) {
+  int nearest = -1;
+  double best = reach_px;
+  for (std::size_t w = 0; w < map.walls.size(); ++w) {
+    if (static_cast<int>(w) == except) continue;
+    const double d = distance(map.wall_px(static_cast<int>(w)), p);
+    if (d < best) best = d, nearest = static_cast<int>(w);
+  }
+  return nearest;
+}
+
+/// Thin lines that lead from a loose end aside to another wall: the front of a closet, a door between two stubs.
+std::vector<Segment2> lines_from_ends(const LayoutMap& map, const std::vector<InkStroke>& thin, double thickness_px,
+                                      double reach_px) {
+  const double touch = 1.2 * thickness_px;
+  const auto ends = loose_ends(map);
+  std::vector<Segment2> lines;
+  for (const auto& end : ends)
+    for (const auto& s : thin) {
+      if (s.length() < 2 * thickness_px || s.length() > reach_px) continue;
+      const bool from_a = (s.axis.a - end.p).norm() < (s.axis.b - end.p).norm();
+      const Point2 foot = from_a ? s.axis.a : s.axis.b, far = from_a ? s.axis.b : s.axis.a;
+      const double turn = line_angle_between(s.axis.heading(), std::atan2(end.outward.y(), end.outward.x()));
+      const int other = wall_near(map, far, touch, end.wall);
+      if ((foot - end.p).norm() > touch || turn < kAside || other < 0) continue;
+      Segment2 line{end.p, closest_point(map.wall_px(other), far)};
+      for (const auto& stub : ends)
+        if (stub.wall == other && (stub.p - far).norm() < touch) line.b = stub.p;
+      if (line_angle_between(line.heading(), s.axis.heading()) > radians(12)) continue;
+      const bool known =
+          std::any_of(lines.begin(), lines.end(), [&](const Segment2& o) { return o.b == line.a && o.a == line.b; });
+      if (!known) lines.push_back(line);
+      break;
+    }
+  return lines;
+}
+
+bool starts_at(const std::vector<Segment2>& lines, const Point2& p) {
+  return std::any_of(lines.begin(), lines.end(),
+                     [&](const Segment2& s) { return (s.a - p).norm() < 1.5 || (s.b - p).norm() < 1.5; });
+}
+
+/// A window is a wall that people and most lasers do not get through. Of what is wider than windows are, one line may
+/// be a railing or a sliding door, two are a frame.
+void add_window(LayoutMap& map, const Gap& gap, const std::vector<InkStroke>& thin, double thickness_px,
+                double reach_px, double confidence) {
+  map.openings.push_back({gap.segment, OpeningKind::kWindow, confidence});
+  const bool framed = lined_share(gap.segment, thin, thickness_px, -1) > kFramed &&
+                      lined_share(gap.segment, thin, thickness_px, 1) > kFramed;
+  if (framed || gap.segment.length() < reach_px) carry_on(map, gap, thickness_px, confidence);
+}
+
+/// Two thin lines as far apart as a wall is thick, from wall to wall: glass.
+void add_glazing(LayoutMap& map, const std::vector<InkStroke>& thin, double thickness_px, const LayoutParams& params) {
+  std::vector<InkStroke> panes;
+  for (const auto& pair : pair_hollow(thin, 1.5 * thickness_px))
+    if (pair.thickness_px > 0.5 * thickness_px) panes.push_back(pair);
+  for (const auto& pane : merge_collinear(panes, params.merge_angle_deg, 3 * thickness_px)) {
+    if (pane.length() < 4 * thickness_px) continue;
+    const int a = wall_near(map, pane.axis.a, 1.5 * thickness_px), b = wall_near(map, pane.axis.b, 1.5 * thickness_px);
+    if (a < 0 || b < 0 || a == b) continue;
+    const Point2 middle = pane.axis.midpoint();
+    const bool known = wall_near(map, middle, 1.5 * thickness_px) >= 0 ||
+                       std::any_of(map.openings.begin(), map.openings.end(), [&](const LayoutOpening& o) {
+                         return distance(o.gap_px, middle) < 1.5 * thickness_px;
+                       });
+    if (known) continue;
+    map.openings.push_back({{closest_point(map.wall_px(a), pane.axis.a), closest_point(map.wall_px(b), pane.axis.b)},
+                            OpeningKind::kWindow,
+                            0.6});
+  }
+}
+
 }  // namespace
 
 void close_gaps(LayoutMap& map, const std::vector<InkStroke>& thin, const cv::Mat& covered, double thickness_px,
@@ -46,18 +134,28 @@ void close_gaps(LayoutMap& map, const std::vector<InkStroke>& thin, const cv::Ma
   const double reach =
       std::max(params.max_opening_share * plan, std::min(2.5 * params.max_opening_share * plan, 9 * thickness_px));
   repair_hidden(map, covered, thickness_px, reach);
-  for (const auto& gap : gaps_ahead(map, thickness_px, reach)) {
-    LayoutOpening opening;
-    opening.gap_px = gap.segment;
-    if (has_leaf(gap.segment, thin, thickness_px)) {
-      opening.kind = OpeningKind::kDoor, opening.confidence = 0.85;
-    } else if (lined_share(gap.segment, thin, thickness_px) > 0.6) {
-      opening.kind = OpeningKind::kWindow, opening.confidence = 0.8;
-    } else {
-      opening.kind = OpeningKind::kPassage, opening.confidence = 0.5;
+  const double widest = std::max(reach, kWidestWindow * plan);
+  const auto lined = [&](const Gap& gap) { return lined_share(gap.segment, thin, thickness_px); };
+  const auto lines = without_ladders(thin, kWidestTread * plan);
+  const auto aside = lines_from_ends(map, lines, thickness_px, reach);
+  for (const auto& gap : gaps_ahead(map, loose_ends(map), thickness_px, widest)) {
+    const bool wide = gap.segment.length() >= reach;
+    const bool closed_aside = starts_at(aside, gap.segment.a) || (gap.corner_b >= 0 && starts_at(aside, gap.segment.b));
+    if (!wide && !closed_aside && has_leaf(gap.segment, thin, thickness_px)) {
+      map.openings.push_back({gap.segment, OpeningKind::kDoor, 0.85});
+    } else if (lined(gap) > (wide ? kFramed : kLined)) {
+      add_window(map, gap, thin, thickness_px, reach, 0.8);
+    } else if (!wide && !closed_aside) {
+      map.openings.push_back({gap.segment, OpeningKind::kPassage, 0.5});
     }
-    map.openings.push_back(opening);
   }
+  for (const auto& gap : gaps_ahead(map, joined_ends(map), thickness_px, widest))
+    if (lined_share(gap.segment, lines, thickness_px) > kFramed) add_window(map, gap, lines, thickness_px, reach, 0.6);
+  for (const auto& line : aside)
+    map.openings.push_back(
+        {line, has_leaf(line, thin, thickness_px) ? OpeningKind::kDoor : OpeningKind::kPassage, 0.6});
+  add_glazing(map, lines, thickness_px, params);
+  map = without_straight_corners(with_degrees(std::move(map)));
 }
 
 }  // namespace smokemap

@@ -87,6 +87,7 @@ Legible legible_ink(const PaperView& view, const cv::Mat& covered, const LayoutP
   Legible out;
   cv::subtract(view.darkness, view.chroma, out.darkness);  // saturates at zero
   out.darkness.setTo(0, covered);
+  out.darkness.setTo(0, find_headers(out.darkness, params));
   const cv::Mat ink = ink_mask(out.darkness, params);
   out.bar_division_px = find_scale_bar(ink);
   cv::Mat text;
@@ -100,15 +101,37 @@ struct Choice {
   cv::Mat covered;  ///< CV_8UC1, 255 where signs and other figures hide the drawing
 };
 
+/// What is left of a stroke that begins or ends in a filled figure, if that still is a stroke lying on ink.
+std::optional<InkStroke> beside_blocks(const InkStroke& stroke, const cv::Mat& blocks, const cv::Mat& ink) {
+  if (covered_share(stroke.axis, blocks) > 0.6) return std::nullopt;
+  const Point2 u = stroke.axis.direction();
+  const auto on = [&](const cv::Mat& mask, double t) {
+    const Point2 p = stroke.axis.a + t * u;
+    const int x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
+    return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x) != 0;
+  };
+  double from = 0, to = stroke.length();
+  while (from < to && on(blocks, from)) from += 1;
+  while (from < to && on(blocks, to)) to -= 1;
+  if (to - from == stroke.length()) return stroke;
+  double inked = 0;
+  for (double t = from; t < to; t += 1) inked += on(ink, t);
+  if (inked < 0.6 * (to - from) || to - from < stroke.thickness_px) return std::nullopt;
+  InkStroke rest = stroke;
+  rest.axis = {stroke.axis.a + from * u, stroke.axis.a + to * u};
+  return rest;
+}
+
 /// Without the outlines of filled figures, which show only against the walls' thickness.
 Choice without_blocks(const std::vector<InkStroke>& strokes, const cv::Mat& darkness, Choice first, double least_px,
                       const LayoutParams& params, const std::optional<Point2>& at) {
   const cv::Mat solid = darkness >= params.solid_share * usual_black(darkness);
   const cv::Mat blocks = find_blocks(solid, std::max(first.walls.thickness_px, first.walls.thickest_px));
+  if (cv::countNonZero(blocks) == 0) return first;
+  const cv::Mat ink = ink_mask(darkness, params);
   std::vector<InkStroke> free;
   for (const auto& s : strokes)
-    if (covered_share(s.axis, blocks) < 0.6) free.push_back(s);
-  if (free.size() == strokes.size()) return first;
+    if (const auto rest = beside_blocks(s, blocks, ink)) free.push_back(*rest);
   cv::Mat covered;
   cv::bitwise_or(first.covered, blocks, covered);
   return {select_walls(free, darkness.size(), params, least_px, at), covered};

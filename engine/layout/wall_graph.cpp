@@ -8,6 +8,7 @@ namespace smokemap {
 namespace {
 
 constexpr double kCrossingAngle = 0.3;                // rad: flatter crossings are continuations
+constexpr double kLikeConfidence = 0.3;               // of walls that become one: what signs hide stays doubtful
 constexpr double kLeastBend = 0.07, kMostBend = 0.6;  // rad: between chords of one curved wall
 
 /// A stroke whose ends may have moved, with the places where others meet it.
@@ -176,6 +177,60 @@ LayoutMap build_wall_graph(const std::vector<InkStroke>& chosen, double thicknes
     map.corners[static_cast<std::size_t>(w.corner_b)].degree += 1;
   }
   return map;
+}
+
+LayoutMap without_straight_corners(LayoutMap map) {
+  std::vector<std::vector<std::size_t>> walls_at(map.corners.size());
+  for (std::size_t w = 0; w < map.walls.size(); ++w)
+    for (const int c : {map.walls[w].corner_a, map.walls[w].corner_b})
+      walls_at[static_cast<std::size_t>(c)].push_back(w);
+  std::vector<bool> gone(map.walls.size(), false);
+  const auto other_end = [&](std::size_t wall, int corner) {
+    return map.walls[wall].corner_a == corner ? map.walls[wall].corner_b : map.walls[wall].corner_a;
+  };
+  for (std::size_t c = 0; c < map.corners.size(); ++c) {
+    if (walls_at[c].size() != 2) continue;
+    const int corner = static_cast<int>(c);
+    const std::size_t one = walls_at[c][0], two = walls_at[c][1];
+    const int from = other_end(one, corner), to = other_end(two, corner);
+    const Segment2 first = map.wall_px(static_cast<int>(one)), second = map.wall_px(static_cast<int>(two));
+    const Segment2 whole{map.corners[static_cast<std::size_t>(from)].p_px,
+                         map.corners[static_cast<std::size_t>(to)].p_px};
+    const auto& p = map.corners[c].p_px;
+    const double thick = std::max(map.walls[one].thickness_px, map.walls[two].thickness_px);
+    if (std::abs(map.walls[one].confidence - map.walls[two].confidence) > kLikeConfidence) continue;
+    if (from == to || (whole.a - p).dot(whole.b - p) > 0 || distance(whole, p) > 0.2 * thick ||
+        line_angle_between(first.heading(), second.heading()) > 0.5 * kLeastBend)
+      continue;
+    const double share = first.length() / std::max(1e-9, first.length() + second.length());
+    auto& kept = map.walls[one];
+    const auto& lost = map.walls[two];
+    kept.thickness_px = share * kept.thickness_px + (1 - share) * lost.thickness_px;
+    kept.confidence = share * kept.confidence + (1 - share) * lost.confidence;
+    kept.by_person |= lost.by_person;
+    kept.corner_a = from, kept.corner_b = to;
+    gone[two] = true;
+    walls_at[c].clear();
+    std::replace(walls_at[static_cast<std::size_t>(to)].begin(), walls_at[static_cast<std::size_t>(to)].end(), two,
+                 one);
+  }
+  LayoutMap out = map;
+  out.corners.clear(), out.walls.clear();
+  std::vector<int> place(map.corners.size(), -1);
+  for (std::size_t c = 0; c < map.corners.size(); ++c) {
+    if (walls_at[c].empty()) continue;
+    place[c] = static_cast<int>(out.corners.size());
+    out.corners.push_back(map.corners[c]);
+    out.corners.back().degree = static_cast<int>(walls_at[c].size());
+  }
+  for (std::size_t w = 0; w < map.walls.size(); ++w)
+    if (!gone[w]) {
+      LayoutWall wall = map.walls[w];
+      wall.corner_a = place[static_cast<std::size_t>(wall.corner_a)];
+      wall.corner_b = place[static_cast<std::size_t>(wall.corner_b)];
+      out.walls.push_back(wall);
+    }
+  return out;
 }
 
 }  // namespace smokemap

@@ -14,4 +14,8 @@ namespace smokemap {
 /// not matter beyond rounding.
 LayoutMap build_wall_graph(const std::vector<InkStroke>& chosen, double thickness_px, const LayoutParams& params);
 
+/// Two walls that carry each other on in a straight line, where nothing else meets them, become one; corners without
+/// walls go. Openings stay where they are.
+LayoutMap without_straight_corners(LayoutMap map);
+
 }  // namespace smokemap

@@ -1,6 +1,7 @@
 #include "layout/wall_strokes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -9,8 +10,16 @@
 namespace smokemap {
 namespace {
 
-constexpr double kHollowShare = 0.3;  ///< of the long lines in pairs: from here on single lines are no walls
-constexpr double kClosed = 1.5;       ///< times an outline's thickness: solid, or two lines that blur made one
+constexpr double kHollowShare = 0.3;   ///< of the long lines in pairs: from here on single lines are no walls
+constexpr double kWindowReach = 2.5;   ///< times the widest door: how far a post may be from the wall it carries on
+constexpr double kLeastOfFirst = 0.2;  ///< of the area of the first reading: smaller is only a part of that drawing
+constexpr double kUsualLimit = 0.25;   ///< of a heap is worth moving the limit of thickness e-fold from the usual
+constexpr double kThinOfUsual = 0.85;  ///< partitions beside thicker outer walls differ a little
+constexpr double kThinOfAll = 0.5;     ///< where all walls are alike
+constexpr double kAlike = 0.3;         ///< in the logarithm of thickness
+constexpr double kPostReach = 10;      ///< times what strokes that carry on each other may be apart: windows
+constexpr double kLeastPart = 0.02;    ///< of the score of the drawing's best part: less is a word or a bar
+constexpr double kClosed = 1.5;        ///< times an outline's thickness: solid, or two lines that blur made one
 
 /// The value below which `share` of the weight lies.
 double weighted_quantile(std::vector<std::pair<double, double>> value_weight, double share) {
@@ -25,28 +34,32 @@ double weighted_quantile(std::vector<std::pair<double, double>> value_weight, do
   return value_weight.back().first;
 }
 
-/// The emptiest place of the length-weighted log histogram between low and high.
+/// The deepest valley of the length-weighted log histogram between low and high: how much lies there, compared with the
+/// smaller of the heaps on its two sides. Where there is no valley, `otherwise`.
 double valley(const std::vector<InkStroke>& strokes, double low, double high, double otherwise) {
-  const int bins = 24;
-  std::vector<double> weight(bins, 0.0);
-  const double span = std::log(high / low);
-  double total = 0;
+  constexpr int kBinsPerFold = 24;
+  constexpr double kThinnest = 0.2, kSpread = 0.07;
+  const int bins = 1 + static_cast<int>(kBinsPerFold * std::log(std::max(2.0, 20 * high / kThinnest)));
+  std::vector<double> weight(static_cast<std::size_t>(bins), 0.0);
   for (const auto& s : strokes) {
-    const double position = std::log(std::max(0.2, s.thickness_px) / low) / span;
+    const double position = kBinsPerFold * std::log(std::max(kThinnest, s.thickness_px) / kThinnest);
     for (int b = 0; b < bins; ++b) {
-      const double away = ((b + 0.5) / bins - position) * span / 0.10;
+      const double away = (b + 0.5 - position) / (kSpread * kBinsPerFold);
       if (std::abs(away) < 3) weight[static_cast<std::size_t>(b)] += s.length() * std::exp(-0.5 * away * away);
     }
-    total += s.length();
   }
-  if (total <= 0) return otherwise;
-  double best = 1e300, at = otherwise;
-  for (int b = 0; b < bins; ++b) {
-    const double t = low * std::exp(span * (b + 0.5) / bins);
-    const double cost = weight[static_cast<std::size_t>(b)] + 0.01 * total * std::abs(std::log(t / otherwise));
+  std::vector<double> heap_above(weight);
+  for (std::size_t b = weight.size() - 1; b-- > 0;) heap_above[b] = std::max(heap_above[b], heap_above[b + 1]);
+  double best = 1e300, at = otherwise, heap_below = 0;
+  for (std::size_t b = 0; b < weight.size(); ++b) {
+    heap_below = std::max(heap_below, weight[b]);
+    const double t = kThinnest * std::exp((static_cast<double>(b) + 0.5) / kBinsPerFold);
+    if (t < low || t > high) continue;
+    const double heap = std::min(heap_below, heap_above[b]);
+    const double cost = (heap > 0 ? weight[b] / heap : 1) + kUsualLimit * std::abs(std::log(t / otherwise));
     if (cost < best) best = cost, at = t;
   }
-  return at;
+  return best < 1 ? at : otherwise;
 }
 
 std::vector<InkStroke> pick(const std::vector<InkStroke>& strokes, const std::vector<std::size_t>& members) {
@@ -68,8 +81,9 @@ std::vector<InkStroke> without_echoes(const std::vector<InkStroke>& strokes) {
   std::vector<InkStroke> kept;
   for (const auto& s : strokes) {
     const bool echo = std::any_of(strokes.begin(), strokes.end(), [&](const InkStroke& o) {
-      const double body = 0.75 * o.thickness_px + 1;
-      return o.length() > 1.3 * s.length() && line_angle_between(o.axis.heading(), s.axis.heading()) < radians(35) &&
+      const double body = o.thickness_px + 1;
+      return o.length() > 1.3 * s.length() && o.coverage > s.coverage - 0.2 &&
+             line_angle_between(o.axis.heading(), s.axis.heading()) < radians(35) &&
              distance(o.axis, s.axis.a) < body && distance(o.axis, s.axis.b) < body;
     });
     if (!echo) kept.push_back(s);
@@ -169,6 +183,154 @@ void take_drawing(WallStrokes& out, std::vector<Drawing> drawings, const std::op
   }
 }
 
+/// By how much (log) lines that run across look thicker than upright ones. Walls of one kind are drawn alike whichever
+/// way they run, but a photograph taken from below or aside shortens one way: the shift at which the two heaps of
+/// thicknesses agree best; 0 if it is small or hardly better than none.
+double tilt_of_thickness(const std::vector<InkStroke>& strokes) {
+  constexpr int kBinsPerFold = 20, kBins = 110, kMostShift = 9, kLeastShift = 3;
+  constexpr double kThinnest = 0.3, kBetter = 1.25;
+  std::array<std::array<double, kBins>, 2> heap{};
+  for (const auto& s : strokes) {
+    if (s.length() < 4 * s.thickness_px) continue;
+    const double place = kBinsPerFold * std::log(std::max(kThinnest, s.thickness_px) / kThinnest);
+    auto& own = heap[std::abs(std::sin(s.axis.heading())) > std::sqrt(0.5) ? 1 : 0];
+    for (int b = std::max(0, static_cast<int>(place) - 3); b < std::min(kBins, static_cast<int>(place) + 5); ++b)
+      own[static_cast<std::size_t>(b)] +=
+          s.length() * s.thickness_px * std::exp(-0.5 * std::pow((b + 0.5 - place) / 1.4, 2));
+  }
+  const auto agreement = [&](int shift) {
+    double sum = 0;
+    for (int b = std::max(0, -shift); b < std::min(kBins, kBins - shift); ++b)
+      sum += std::min(heap[0][static_cast<std::size_t>(b + shift)], heap[1][static_cast<std::size_t>(b)]);
+    return sum;
+  };
+  int best = 0;
+  for (int shift = -kMostShift; shift <= kMostShift; ++shift)
+    if (std::abs(shift) >= kLeastShift && agreement(shift) > kBetter * agreement(0) &&
+        agreement(shift) > agreement(best))
+      best = shift;
+  return static_cast<double>(best) / kBinsPerFold;
+}
+
+/// The strokes as thick as they would look without that tilt.
+void straighten_thickness(std::vector<InkStroke>& strokes) {
+  const double tilt = tilt_of_thickness(strokes);
+  if (tilt == 0) return;
+  for (auto& s : strokes) s.thickness_px *= std::exp(-0.5 * tilt * std::cos(2 * s.axis.heading()));
+}
+
+struct ThicknessClasses {
+  double usual_px = 0;
+  double outer_px = 0;       ///< outer walls may be twice as thick as partitions, whichever of them are more
+  double thin_limit_px = 0;  ///< what is thinner is no wall
+};
+
+ThicknessClasses thickness_classes(const std::vector<InkStroke>& plan, const LayoutParams& params) {
+  std::vector<std::pair<double, double>> by_area;
+  for (const auto& s : plan)
+    if (s.length() >= 2.5 * s.thickness_px) by_area.emplace_back(s.thickness_px, s.length() * s.thickness_px);
+  ThicknessClasses classes;
+  classes.usual_px = weighted_quantile(by_area, 0.6);
+  classes.outer_px = std::max(classes.usual_px, weighted_quantile(by_area, 0.9));
+  const double most = std::max(kThinOfAll * classes.usual_px,
+                               std::min(1.5 * params.thin_ratio * classes.outer_px, kThinOfUsual * classes.usual_px));
+  classes.thin_limit_px =
+      valley(plan, 0.7 * params.thin_ratio * classes.usual_px, most, 0.9 * params.thin_ratio * classes.outer_px);
+  return classes;
+}
+
+/// Lines of the main class in pairs: nothing is thicker than the outline of a wall.
+void take_hollow(WallStrokes& out, const std::vector<InkStroke>& thick, const std::vector<InkStroke>& pairs,
+                 const HollowStyle& style) {
+  std::vector<std::pair<double, double>> spacing;
+  for (const auto& p : pairs) {
+    spacing.emplace_back(p.thickness_px, p.length());
+    if (p.thickness_px < 2.5 * style.usual_px) out.walls.push_back(p);
+  }
+  for (const auto& s : thick)
+    if (s.thickness_px > kClosed * style.outline_px && !half_of_a_pair(s, pairs)) out.walls.push_back(s);
+  out.thickness_px = weighted_quantile(spacing, 0.6);
+}
+
+WallStrokes walls_of_classes(const std::vector<InkStroke>& candidates, const ThicknessClasses& classes, double side_px,
+                             const LayoutParams& params, bool may_be_hollow, const std::optional<Point2>& at) {
+  WallStrokes out;
+  out.thickness_px = classes.usual_px;
+  out.thin_limit_px = classes.thin_limit_px;
+  std::vector<InkStroke> thick;
+  for (const auto& s : candidates) {
+    if (s.thickness_px < classes.thin_limit_px)
+      out.thin.push_back(s);
+    else if (s.thickness_px < std::max(2.2 * classes.usual_px, 1.3 * classes.outer_px) && s.coverage > 0.55)
+      thick.push_back(s);
+  }
+  thick = without_blocks(without_echoes(thick), kWindowReach * params.max_opening_share * side_px);
+  const auto pairs =
+      merge_collinear(pair_hollow(thick, 0.6 * params.max_wall_share * side_px), params.merge_angle_deg, 2);
+  const HollowStyle style = hollow_style(pairs, thick, side_px);
+  out.hollow = may_be_hollow && style.share > kHollowShare;
+  out.hollow_px = style.widest_px;
+  out.outline_px = style.outline_px;
+  if (out.hollow) {
+    take_hollow(out, thick, pairs, style);
+    out.thin = candidates;
+  } else {
+    out.walls = without_ladders(dark_enough(thick), 0.015 * side_px);
+    if (style.share > 0.12) out.walls = with_pairs_joined(out.walls, pairs);
+  }
+  std::vector<std::pair<double, double>> long_ones;
+  for (const auto& s : out.walls)
+    if (s.length() >= 5 * s.thickness_px) long_ones.emplace_back(s.thickness_px, s.length() * s.thickness_px);
+  out.thickest_px = weighted_quantile(long_ones, 0.9);
+  take_drawing(out, rank_drawings(out.walls, out.thickness_px, params.max_opening_share * side_px, side_px), at);
+  return out;
+}
+
+double chosen_area(const WallStrokes& walls) {
+  double area = 0;
+  for (const auto& d : walls.drawings)
+    if (d.chosen) area += (d.high_px - d.low_px).prod();
+  return area;
+}
+
+/// What lies within the chosen drawing and hangs together with it. Bars of a legend, signs and labels that stand alone
+/// between its wings say nothing about the thickness of its walls.
+std::vector<InkStroke> within_drawing(const std::vector<InkStroke>& strokes, const WallStrokes& walls, double bridge_px,
+                                      double side_px) {
+  const auto chosen =
+      std::find_if(walls.drawings.begin(), walls.drawings.end(), [](const auto& d) { return d.chosen; });
+  if (chosen == walls.drawings.end()) return {};
+  const Point2 margin = Point2::Constant(walls.thickest_px);
+  std::vector<InkStroke> inside;
+  for (const auto& s : strokes) {
+    const Point2 p = s.axis.midpoint();
+    if ((p.array() > (chosen->low_px - margin).array()).all() && (p.array() < (chosen->high_px + margin).array()).all())
+      inside.push_back(s);
+  }
+  const auto is_wall = [&](const InkStroke& s) {
+    return std::any_of(walls.walls.begin(), walls.walls.end(),
+                       [&](const InkStroke& w) { return w.axis.a == s.axis.a && w.axis.b == s.axis.b; });
+  };
+  const auto carries_on = [&](const InkStroke& s) {
+    return std::any_of(inside.begin(), inside.end(), [&](const InkStroke& o) {
+      return &o != &s && line_angle_between(o.axis.heading(), s.axis.heading()) < radians(4) &&
+             std::abs(signed_line_distance(o.axis, s.axis.midpoint())) < 0.5 * s.thickness_px + 1 &&
+             std::abs(std::log(o.thickness_px / s.thickness_px)) < kAlike &&
+             gap_between(o.axis, s.axis) < kPostReach * bridge_px;
+    });
+  };
+  std::vector<InkStroke> hanging;
+  const auto regions = connected_regions(inside, bridge_px, side_px);
+  for (const auto& region : regions) {
+    const bool belongs = region.score() > kLeastPart * regions.front().score() ||
+                         std::any_of(region.members.begin(), region.members.end(),
+                                     [&](std::size_t m) { return is_wall(inside[m]) || carries_on(inside[m]); });
+    for (const std::size_t m : region.members)
+      if (belongs) hanging.push_back(inside[m]);
+  }
+  return hanging;
+}
+
 }  // namespace
 
 WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture, const LayoutParams& params,
@@ -179,53 +341,22 @@ WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture
   for (const auto& s : strokes)
     if (s.length() >= 0.6 * params.min_wall_share * side && s.length() >= 0.7 * s.thickness_px) candidates.push_back(s);
   candidates = without_dash_dot_lines(candidates);
+  straighten_thickness(candidates);
   const auto regions = connected_regions(candidates, bridge, side);
-  WallStrokes out;
-  if (regions.empty()) return out;
-  const auto plan = pick(candidates, region_at(regions, at).members);
-
-  std::vector<std::pair<double, double>> by_area;
-  for (const auto& s : plan)
-    if (s.length() >= 2.5 * s.thickness_px) by_area.emplace_back(s.thickness_px, s.length() * s.thickness_px);
-  out.thickness_px = weighted_quantile(by_area, 0.6);
-  out.thin_limit_px = valley(plan, 0.7 * params.thin_ratio * out.thickness_px,
-                             1.1 * params.thin_ratio * out.thickness_px, 0.9 * params.thin_ratio * out.thickness_px);
-  if (least_px > 0) out.thin_limit_px = least_px;
-  std::vector<InkStroke> thick;
-  for (const auto& s : candidates) {
-    if (s.thickness_px < out.thin_limit_px)
-      out.thin.push_back(s);
-    else if (s.thickness_px < 2.2 * out.thickness_px && s.coverage > 0.55)
-      thick.push_back(s);
+  if (regions.empty()) return {};
+  ThicknessClasses classes = thickness_classes(pick(candidates, region_at(regions, at).members), params);
+  if (least_px > 0) {
+    classes.thin_limit_px = least_px;
+    return walls_of_classes(candidates, classes, side, params, false, at);
   }
-  thick = without_blocks(without_echoes(thick), params.max_opening_share * side);
-
-  // Lines of the main class in pairs: nothing is thicker than the outline of a wall.
-  const auto pairs = merge_collinear(pair_hollow(thick, 0.6 * params.max_wall_share * side), params.merge_angle_deg, 2);
-  const HollowStyle style = hollow_style(pairs, thick, side);
-  out.hollow = least_px <= 0 && style.share > kHollowShare;
-  out.hollow_px = style.widest_px;
-  out.outline_px = style.outline_px;
-  if (out.hollow) {
-    std::vector<std::pair<double, double>> spacing;
-    for (const auto& p : pairs) {
-      spacing.emplace_back(p.thickness_px, p.length());
-      if (p.thickness_px < 2.5 * style.usual_px) out.walls.push_back(p);
-    }
-    for (const auto& s : thick)
-      if (s.thickness_px > kClosed * style.outline_px && !half_of_a_pair(s, pairs)) out.walls.push_back(s);
-    out.thickness_px = weighted_quantile(spacing, 0.6);
-    out.thin = candidates;
-  } else {
-    out.walls = without_ladders(dark_enough(thick), 0.015 * side);
-    if (style.share > 0.12) out.walls = with_pairs_joined(out.walls, pairs);
-  }
-  std::vector<std::pair<double, double>> long_ones;
-  for (const auto& s : out.walls)
-    if (s.length() >= 5 * s.thickness_px) long_ones.emplace_back(s.thickness_px, s.length() * s.thickness_px);
-  out.thickest_px = weighted_quantile(long_ones, 0.9);
-  take_drawing(out, rank_drawings(out.walls, out.thickness_px, params.max_opening_share * side, side), at);
-  return out;
+  // What hangs together was the frame of the sheet, or the partitions without the outer walls: once more by what lies
+  // within the drawing that it led to.
+  const auto first = walls_of_classes(candidates, classes, side, params, true, at);
+  const auto inside = within_drawing(candidates, first, bridge, side);
+  if (inside.empty()) return first;
+  auto second = walls_of_classes(candidates, thickness_classes(inside, params), side, params, true, at);
+  // Signs and labels may be thicker than the lines of a plan with hollow walls.
+  return chosen_area(second) >= kLeastOfFirst * chosen_area(first) ? second : first;
 }
 
 }  // namespace smokemap

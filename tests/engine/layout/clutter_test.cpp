@@ -65,6 +65,53 @@ TEST(Text, NeedsThreeLetters) {
 
 TEST(Text, OfAnEmptyPictureIsNothing) { EXPECT_EQ(cv::countNonZero(find_text(empty_ink(40, 30))), 0); }
 
+cv::Mat header_on(cv::Mat ink, const cv::Rect& bar, const std::string& words, double size) {
+  cv::rectangle(ink, bar, kInkOn, cv::FILLED);
+  cv::putText(ink, words, {bar.x + 10, bar.y + bar.height * 3 / 4}, cv::FONT_HERSHEY_SIMPLEX, size, cv::Scalar(0), 2);
+  return ink;
+}
+
+// Regression: on gray copies the title's bar was taken for the plan, and a legend's for its thickest wall.
+TEST(Headers, AreDarkBarsWithLightWords) {
+  const cv::Rect title(20, 20, 1500, 60), legend(1100, 300, 300, 24);
+  cv::Mat ink = header_on(header_on(empty_ink(), title, "Evacuation plan", 1.4), legend, "In case of fire", 0.6);
+  cv::rectangle(ink, {1100, 300, 300, 400}, kInkOn, 2);  // the box below it
+  const cv::Mat headers = find_headers(ink, LayoutParams{});
+  EXPECT_GT(share_marked(headers, ink, title), 0.95);
+  EXPECT_GT(share_marked(headers, ink, legend), 0.95);
+  EXPECT_LT(share_marked(headers, ink, {1090, 340, 320, 400}), 0.01) << "the box is left";
+}
+
+TEST(Headers, AreFoundAskew) {
+  cv::Mat ink = header_on(empty_ink(), {200, 500, 1000, 50}, "Evacuation plan", 1.2), turned;
+  cv::warpAffine(ink, turned, cv::getRotationMatrix2D({800, 550}, 4, 1), ink.size(), cv::INTER_NEAREST);
+  EXPECT_GT(share_marked(find_headers(turned, LayoutParams{}), turned, {0, 0, turned.cols, turned.rows}), 0.95);
+}
+
+TEST(Headers, AreNoWallsWhateverIsDrawnAtTheirEnds) {
+  cv::Mat ink = empty_ink();
+  cv::rectangle(ink, {200, 200, 400, 20}, kInkOn, cv::FILLED);  // solid
+  cv::rectangle(ink, {200, 400, 400, 20}, kInkOn, 4);           // hollow
+  for (int y = 300; y < 320; y += 4) cv::line(ink, {610, y}, {640, y}, kInkOn, 1);
+  cv::rectangle(ink, {640, 300, 400, 20}, kInkOn, cv::FILLED);                               // between dashed windows
+  for (int x = 200; x < 1000; x += 200) cv::rectangle(ink, {x, 600, 200, 300}, kInkOn, 12);  // a row of rooms
+  EXPECT_EQ(cv::countNonZero(find_headers(ink, LayoutParams{})), 0);
+  EXPECT_EQ(cv::countNonZero(find_headers(empty_ink(1, 1), LayoutParams{})), 0);
+}
+
+TEST(Blocks, AreDotsThatStandAloneAndNoJunctionsOfWalls) {
+  cv::Mat ink = empty_ink();
+  cv::line(ink, {200, 500}, {1400, 500}, kInkOn, 16);
+  cv::line(ink, {800, 100}, {800, 1000}, kInkOn, 16);
+  cv::line(ink, {1100, 100}, {1400, 500}, kInkOn, 16);
+  EXPECT_EQ(cv::countNonZero(find_blocks(ink, 14)), 0) << "walls a little thicker than they were measured";
+  cv::circle(ink, {760, 540}, 13, kInkOn, cv::FILLED);
+  const cv::Mat blocks = find_blocks(ink, 16);
+  EXPECT_GT(blocks.at<std::uint8_t>(540, 760), 0);
+  EXPECT_EQ(blocks.at<std::uint8_t>(500, 900), 0);
+  EXPECT_EQ(blocks.at<std::uint8_t>(700, 800), 0);
+}
+
 TEST(Blocks, AreSolidSignsWithTheirPictograms) {
   cv::Mat ink = empty_ink();
   cv::rectangle(ink, {300, 300, 44, 44}, kInkOn, cv::FILLED);

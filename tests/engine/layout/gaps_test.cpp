@@ -53,15 +53,19 @@ TEST(LooseEnds, AreThoseThatMeetNothing) {
 }
 
 TEST(GapsAhead, LieBetweenFacingEndsOnceAndBeforeWallsAcross) {
-  const auto facing = gaps_ahead(map_of({{{0, 100}, {100, 100}}, {{150, 100}, {300, 100}}}), 8, 80);
+  const auto ahead = [](const std::vector<Segment2>& walls) {
+    const auto map = map_of(walls);
+    return gaps_ahead(map, loose_ends(map), 8, 80);
+  };
+  const auto facing = ahead({{{0, 100}, {100, 100}}, {{150, 100}, {300, 100}}});
   ASSERT_EQ(facing.size(), 1U);
   EXPECT_GE(facing[0].corner_b, 0);
-  const auto across = gaps_ahead(map_of({{{0, 100}, {100, 100}}, {{160, 0}, {160, 200}}}), 8, 80);
+  const auto across = ahead({{{0, 100}, {100, 100}}, {{160, 0}, {160, 200}}});
   ASSERT_EQ(across.size(), 1U);
   EXPECT_EQ(across[0].corner_b, -1);
   EXPECT_EQ(across[0].wall_b, 1);
   EXPECT_NEAR(across[0].segment.length(), 60, 1e-9);
-  EXPECT_TRUE(gaps_ahead(map_of({{{0, 100}, {100, 100}}, {{190, 100}, {300, 100}}}), 8, 80).empty());
+  EXPECT_TRUE(ahead({{{0, 100}, {100, 100}}, {{190, 100}, {300, 100}}}).empty());
 }
 
 TEST(HiddenWalls, RunStraightOnBelowASign) {

@@ -82,6 +82,46 @@ TEST(SelectWalls, LeavesThinLinesOut) {
   EXPECT_LT(chosen.thin_limit_px, 5);
 }
 
+/// Rooms in a row with walls 7 px thick and leaves of 2.4 px, in an outer wall of 15 px that its windows part.
+std::vector<InkStroke> office_with_windows() {
+  std::vector<InkStroke> strokes;
+  for (const double y : {100.0, 700.0})
+    for (double x = 100; x < 1300; x += 200) strokes.push_back(stroke(x, y, x + 120, y, 15));
+  for (const double x : {100.0, 1300.0})
+    for (double y = 100; y < 700; y += 200) strokes.push_back(stroke(x, y, x, y + 120, 15));
+  for (const double y : {340.0, 460.0}) {
+    for (double x = 140; x < 1300; x += 200) strokes.push_back(stroke(x, y, std::min(x + 160, 1270.0), y, 7));
+    for (double x = 300; x < 1300; x += 200) {
+      strokes.push_back(stroke(x, y < 400 ? 140 : 460, x, y < 400 ? 340 : 660, 7));
+      strokes.push_back(stroke(x - 4, y, x - 4, y + (y < 400 ? -38 : 38), 2.4));  // a leaf
+    }
+  }
+  return strokes;
+}
+
+// Regression: where partitions are more than the outer walls, door leaves were thick enough to be walls.
+TEST(SelectWalls, MeasuresThinLinesByTheOuterWallsWhateverTheirNumber) {
+  const auto chosen = select_walls(office_with_windows(), {1500, 900}, LayoutParams{});
+  EXPECT_GT(chosen.thin_limit_px, 2.4);
+  EXPECT_LT(chosen.thin_limit_px, 7);
+  for (const auto& wall : chosen.walls) EXPECT_GE(wall.thickness_px, 7);
+}
+
+// Regression: the frame of the sheet hung together best, and its thickness was taken for that of the walls.
+TEST(SelectWalls, MeasuresThicknessWithinTheDrawingNotOnItsFrame) {
+  auto strokes = office_with_windows();
+  for (const double inset : {0.0, 8.0}) {
+    strokes.push_back(stroke(10 + inset, 10 + inset, 1490 - inset, 10 + inset, 2));
+    strokes.push_back(stroke(10 + inset, 890 - inset, 1490 - inset, 890 - inset, 2));
+    strokes.push_back(stroke(10 + inset, 10 + inset, 10 + inset, 890 - inset, 2));
+    strokes.push_back(stroke(1490 - inset, 10 + inset, 1490 - inset, 890 - inset, 2));
+  }
+  const auto chosen = select_walls(strokes, {1500, 900}, LayoutParams{});
+  EXPECT_FALSE(chosen.hollow);
+  EXPECT_GT(chosen.thin_limit_px, 2.4);
+  EXPECT_GE(chosen.walls.size(), 30U);
+}
+
 TEST(SelectWalls, HasNothingToSayAboutNothing) {
   EXPECT_TRUE(select_walls({}, {1000, 800}, LayoutParams{}).walls.empty());
 }

@@ -1,0 +1,183 @@
+#include "layout/openings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "layout/gaps.hpp"
+#include "layout/read_layout.hpp"
+#include "layout/rooms.hpp"
+#include "layout/wall_graph.hpp"
+#include "tests/engine/layout/drawn_plan.hpp"
+
+namespace smokemap {
+namespace {
+
+InkStroke line_of(double x1, double y1, double x2, double y2, double thickness = 1.5) {
+  InkStroke s;
+  s.axis = {Point2(x1, y1), Point2(x2, y2)};
+  s.thickness_px = thickness, s.coverage = 1, s.darkness = 1;
+  return s;
+}
+
+constexpr double kWallPx = 10;
+
+/// A room of 1000 x 600 whose upper wall is left out between `from` and `to`.
+std::vector<InkStroke> room_open_above(double from, double to) {
+  return {line_of(0, 0, from, 0, kWallPx), line_of(to, 0, 1000, 0, kWallPx), line_of(0, 0, 0, 600, kWallPx),
+          line_of(1000, 0, 1000, 600, kWallPx), line_of(0, 600, 1000, 600, kWallPx)};
+}
+
+LayoutMap closed(const std::vector<InkStroke>& walls, const std::vector<InkStroke>& thin) {
+  LayoutMap map = build_wall_graph(walls, kWallPx, LayoutParams{});
+  close_gaps(map, thin, cv::Mat::zeros(700, 1100, CV_8UC1), kWallPx, LayoutParams{});
+  return map;
+}
+
+int count_of(const LayoutMap& map, OpeningKind kind) {
+  return static_cast<int>(
+      std::count_if(map.openings.begin(), map.openings.end(), [&](const LayoutOpening& o) { return o.kind == kind; }));
+}
+
+// Regression: rooms with windows wider than doors stayed open.
+TEST(Openings, AWideGapWithAFrameIsAWindow) {
+  const auto walls = room_open_above(380, 640);
+  EXPECT_TRUE(closed(walls, {}).openings.empty()) << "nothing is drawn there";
+  const auto map = closed(walls, {line_of(380, -4, 640, -4), line_of(380, 4, 640, 4)});
+  ASSERT_EQ(map.openings.size(), 1U);
+  EXPECT_EQ(map.openings[0].kind, OpeningKind::kWindow);
+  EXPECT_NEAR(map.openings[0].gap_px.length(), 260, 2);
+  EXPECT_EQ(find_rooms(map).size(), 1U);
+}
+
+TEST(Openings, AFrameInPiecesCountsAsOne) {
+  const auto walls = room_open_above(380, 640);
+  EXPECT_EQ(closed(walls, {line_of(380, -4, 500, -4), line_of(512, 4, 640, 4)}).openings.size(), 1U);
+  EXPECT_TRUE(closed(walls, {line_of(380, -4, 500, -4), line_of(390, 4, 500, 4)}).openings.empty())
+      << "the same half twice is half of it";
+}
+
+TEST(Openings, NoFrameIsTooWideToBelieve) {
+  EXPECT_TRUE(closed(room_open_above(200, 900), {line_of(200, -4, 900, -4)}).openings.empty());
+}
+
+// A glass front that carries on a wall which ends in a corner.
+TEST(Openings, AFrameCarriesOnAWallThatEndsInACorner) {
+  auto walls = room_open_above(500, 500);
+  walls.push_back(line_of(300, 300, 600, 300, kWallPx));
+  walls.push_back(line_of(600, 300, 600, 450, kWallPx));  // goes on to the lower wall as glass
+  walls.push_back(line_of(300, 300, 300, 600, kWallPx));
+  const auto open = find_rooms(closed(walls, {})).size();
+  const auto map = closed(walls, {line_of(600, 450, 600, 600)});
+  EXPECT_EQ(find_rooms(map).size(), open + 1);
+}
+
+TEST(JoinedEnds, AreCornersWhereNothingCarriesOn) {
+  const auto map = build_wall_graph(
+      {line_of(0, 0, 200, 0, kWallPx), line_of(200, 0, 200, 100, kWallPx), line_of(100, 0, 100, 80, kWallPx)}, kWallPx,
+      LayoutParams{});
+  const auto ends = joined_ends(map);
+  // the corner looks right and up, the foot of the tee up; along the upper wall something carries on at the tee
+  ASSERT_EQ(ends.size(), 3U);
+  const auto looks = [&](const Point2& p, const Point2& outward) {
+    return std::any_of(ends.begin(), ends.end(),
+                       [&](const LooseEnd& e) { return (e.p - p).norm() < 1 && e.outward.dot(outward) > 0.99; });
+  };
+  EXPECT_TRUE(looks({200, 0}, {1, 0}));
+  EXPECT_TRUE(looks({200, 0}, {0, -1}));
+  EXPECT_TRUE(looks({100, 0}, {0, -1}));
+}
+
+// Regression: the stubs of a closet were carried on across the room, which its front never was.
+TEST(Openings, AClosetIsShutAlongItsFront) {
+  auto walls = room_open_above(500, 500);
+  walls.push_back(line_of(400, 0, 400, 100, kWallPx));
+  walls.push_back(line_of(480, 0, 480, 100, kWallPx));
+  walls.push_back(line_of(380, 170, 500, 170, kWallPx));  // a wall across, within reach of both
+  const auto map = closed(walls, {line_of(405, 98, 475, 98), line_of(405, 102, 475, 102)});
+  const auto across = std::count_if(map.openings.begin(), map.openings.end(), [](const LayoutOpening& o) {
+    return std::abs(o.gap_px.a.y() - o.gap_px.b.y()) < 5;
+  });
+  EXPECT_EQ(across, 1) << "both lines are one front";
+  EXPECT_EQ(static_cast<int>(map.openings.size()), 1);
+}
+
+TEST(Openings, TreadsOfAStairAreNoFronts) {
+  auto walls = room_open_above(500, 500);
+  walls.push_back(line_of(100, 0, 100, 150, kWallPx));
+  std::vector<InkStroke> treads;
+  for (int i = 0; i < 20; ++i) treads.push_back(line_of(5, 60.0 + 12 * i, 95, 60.0 + 12 * i));
+  EXPECT_TRUE(closed(walls, treads).openings.empty());
+}
+
+// Regression: a glazed side left the room open.
+TEST(Openings, TwoThinLinesFromWallToWallAreGlass) {
+  auto walls = room_open_above(500, 500);
+  const auto map = closed(walls, {line_of(296, 5, 296, 595), line_of(304, 5, 304, 595)});
+  EXPECT_EQ(count_of(map, OpeningKind::kWindow), 1);
+  EXPECT_EQ(find_rooms(map).size(), 2U);
+  EXPECT_LT(map.openings.front().confidence, 0.8) << "it may be furniture";
+  EXPECT_TRUE(closed(walls, {line_of(296, 5, 296, 400), line_of(304, 5, 304, 400)}).openings.empty())
+      << "ends in the open";
+  EXPECT_TRUE(closed(walls, {line_of(270, 5, 270, 595), line_of(330, 5, 330, 595)}).openings.empty())
+      << "too far apart";
+}
+
+cv::Mat drawn(const std::vector<cv::Rect>& solid) {
+  cv::Mat picture(1100, 1600, CV_8UC3, cv::Scalar(255, 255, 255));
+  for (const auto& box : solid) cv::rectangle(picture, box, cv::Scalar(20, 20, 20), cv::FILLED);
+  return picture;
+}
+
+/// Walls 16 px thick around 1200 x 600, without the upper one.
+std::vector<cv::Rect> three_walls() { return {{200, 200, 16, 600}, {1384, 200, 16, 600}, {200, 784, 1200, 16}}; }
+
+void draw_frame(cv::Mat& picture, int from, int to) {
+  for (const int y : {201, 214}) cv::line(picture, {from, y}, {to, y}, cv::Scalar(60, 60, 60), 1, cv::LINE_AA);
+}
+
+// Regression: the short pieces of wall between windows were not read, since one edge runs along frames and walls.
+TEST(ReadLayout, PiersBetweenWindowsAreWalls) {
+  auto solid = three_walls();
+  for (const int x : {200, 660, 1340}) solid.push_back({x, 200, 60, 16});
+  cv::Mat picture = drawn(solid);
+  draw_frame(picture, 260, 660), draw_frame(picture, 720, 1340);
+  const auto reading = read_layout(picture);
+  ASSERT_TRUE(reading) << reading.error().message;
+  const auto walls = testing::wall_segments(reading->layout);
+  for (const int x : {200, 660, 1340}) {
+    const Segment2 pier{Point2(x + 8, 208), Point2(x + 52, 208)};
+    EXPECT_GT(testing::covered_by({pier}, walls, 5), 0.8) << "pier at " << x;
+  }
+  EXPECT_EQ(testing::covered_by({{Point2(300, 208), Point2(620, 208)}}, walls, 5), 0) << "glass is no wall";
+}
+
+TEST(ReadLayout, APostBetweenTwoWindowsClosesTheRoom) {
+  auto solid = three_walls();
+  solid.push_back({200, 200, 440, 16}), solid.push_back({960, 200, 440, 16}), solid.push_back({790, 200, 18, 16});
+  cv::Mat picture = drawn(solid);
+  draw_frame(picture, 640, 790), draw_frame(picture, 808, 960);
+  const auto reading = read_layout(picture);
+  ASSERT_TRUE(reading) << reading.error().message;
+  EXPECT_EQ(reading->layout.rooms_px.size(), 1U);
+}
+
+// Regression: a dot hardly wider than the walls, close to one, was read as slanting walls.
+TEST(ReadLayout, ADotBesideAWallIsNoWall) {
+  auto solid = three_walls();
+  solid.push_back({200, 200, 1200, 16}), solid.push_back({792, 200, 16, 400});
+  cv::Mat picture = drawn(solid);
+  cv::circle(picture, {770, 640}, 14, cv::Scalar(20, 20, 20), cv::FILLED, cv::LINE_AA);
+  cv::rectangle(picture, {792, 660, 16, 130}, cv::Scalar(20, 20, 20), cv::FILLED);
+  const auto reading = read_layout(picture);
+  ASSERT_TRUE(reading) << reading.error().message;
+  for (const auto& wall : testing::wall_segments(reading->layout)) {
+    const double turn = std::min(line_angle_between(wall.heading(), 0), line_angle_between(wall.heading(), kPi / 2));
+    EXPECT_LT(turn, radians(4)) << wall.a.transpose() << " to " << wall.b.transpose();
+  }
+  EXPECT_EQ(reading->layout.rooms_px.size(), 2U);
+}
+
+}  // namespace
+}  // namespace smokemap
