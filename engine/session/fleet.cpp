@@ -201,7 +201,8 @@ void Fleet::go_back(Robot& robot, Stamp now) {
 }
 
 void Fleet::take_goal(Robot& robot, Goal& goal, const Point2& p_map) {
-  if (robot.status.goal_id != goal.id) goal.state = GoalState::kSent, robot.avoided.clear(), robot.looking_s = 0;
+  if (robot.status.goal_id != goal.id)
+    goal.state = GoalState::kSent, robot.avoided.clear(), robot.looking_s = 0, robot.looked_at.reset();
   robot.status.goal_id = goal.id;
   robot.detour = false;
   robot.p_map_retreat.reset();
@@ -212,7 +213,7 @@ bool Fleet::look_for_way(Robot& robot, Stamp now, const Goal& goal, const Point2
   const Point2 here = robot.status.T_map_robot.translation();
   const bool there =
       robot.detour && (robot.last_detour == PilotState::kArrived || robot.last_detour == PilotState::kGivenUp);
-  if (robot.detour && !there && to_seconds(now - robot.looked_at) < params_.look_again_s) return true;
+  if (!there && robot.looked_at && to_seconds(now - *robot.looked_at) < params_.look_again_s) return robot.detour;
   robot.looked_at = now;
   if (!map_) return false;
   if (robot.detour && plan_path(*map_, here, p_map, params_.pilot.planner)) {
@@ -224,8 +225,9 @@ bool Fleet::look_for_way(Robot& robot, Stamp now, const Goal& goal, const Point2
   if (there && robot.pilot.target()) robot.avoided.push_back(*robot.pilot.target());
   if (there && robot.last_detour == PilotState::kArrived) robot.looking_s = 0;
   const auto frontier = best_frontier(*map_, here, avoided_by(robot), params_.frontier, p_map);
-  robot.detour = frontier.has_value();
   robot.last_detour = PilotState::kDriving;
+  if (!frontier && !robot.detour) return false;  // a target set anew would begin its patience anew
+  robot.detour = frontier.has_value();
   robot.pilot.set_target(frontier ? frontier->target : p_map);
   return robot.detour;
 }

@@ -110,9 +110,9 @@ class Fleet {
     PilotOutput last;
     std::vector<Point2> avoided;  ///< frontiers that could not be reached, or were
     PilotState last_detour = PilotState::kIdle;
-    bool detour = false;   ///< no way to the goal is known: the pilot looks for one
-    Stamp looked_at = 0;   ///< when a way to the goal was last asked for
-    double looking_s = 0;  ///< for a way, without coming anywhere new
+    bool detour = false;             ///< no way to the goal is known: the pilot looks for one
+    std::optional<Stamp> looked_at;  ///< when a way to the goal was last asked for
+    double looking_s = 0;            ///< for a way, without coming anywhere new
     Stamp steered_at = 0;
     Stamp idle_since = 0;
     bool ever_localized = false;

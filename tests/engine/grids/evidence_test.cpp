@@ -157,5 +157,16 @@ TEST(DistanceMap, FromOccupiedCellsAndFarAway) {
   EXPECT_DOUBLE_EQ(DistanceMap::from_segments({}, 0.1, 2.0).at({0, 0}), 2.0);
 }
 
+TEST(LogOddsGrid, TheGrazedEndOfABeamSaysNothingAndIsTakenBackExactly) {
+  LogOddsGrid grid(0.1);
+  grid.add_hit({0.05, 0.05}, {1.05, 0.05}, 0.35);
+  const auto at = [&](double x) { return grid.log_odds(grid.frame().cell_of({x, 0.05})); };
+  EXPECT_GT(at(1.05), 0);
+  for (const double x : {0.95, 0.85, 0.75}) EXPECT_FALSE(grid.seen(grid.frame().cell_of({x, 0.05}))) << x;
+  for (const double x : {0.05, 0.35, 0.65}) EXPECT_LT(at(x), 0) << x;
+  grid.remove_hit({0.05, 0.05}, {1.05, 0.05}, 0.35);
+  EXPECT_TRUE(grid.occupancy().empty());
+}
+
 }  // namespace
 }  // namespace smokemap

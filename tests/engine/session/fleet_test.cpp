@@ -223,6 +223,51 @@ TEST(Fleet, AGoalThatTheNavigatorDoesNotReachFailsWithTheReason) {
   EXPECT_EQ(robot.recorder->places["robot1"].size(), 4U);
 }
 
+TEST(Fleet, ARobotThatCannotGetOnInSmokeSaysSoAndGoesBackToWhereItCanSee) {
+  Pair robots({{"robot1", Pose2(-1, 0, 0)}});
+  ASSERT_THAT(robots.board.apply(goal_at("g", {4, 0})), test::IsOk());
+  Pose2& pose = robots.poses["robot1"];
+  std::string reason;
+  for (int i = 0; i < 1500; ++i) {
+    robots.fleet.heard("robot1", robots.now);
+    PoseReport report = standing_at(pose);
+    report.smoke_share = pose.x() > 1.0 ? 0.9 : 0.0;
+    for (double y = -5; y < 5; y += 0.05)  // a fence that the map does not show
+      if (const Point2 p = pose.inverse() * Point2(2.0, y); p.norm() < 1.2) report.obstacles_robot.push_back(p);
+    robots.fleet.report(report);
+    robots.fleet.tick(robots.now, robots.board, Carrier(robots.board, robots.merged, robots.sketch));
+    const Twist twist = robots.recorder->last["robot1"];
+    pose = pose * Pose2(twist.speed_mps * 0.1, 0, twist.turn_rate_radps * 0.1);
+    robots.now += from_seconds(0.1);
+    ASSERT_LT(pose.x(), 1.75) << "it does not touch the fence";
+  }
+  const Goal& goal = *robots.board.find_goal("g");
+  EXPECT_EQ(goal.state, GoalState::kFailed);
+  EXPECT_NE(goal.reason.find("cannot get on in the smoke"), std::string::npos) << goal.reason;
+  EXPECT_LT(pose.x(), 1.3) << "back in clear air";
+}
+
+TEST(Fleet, LookingForAWayEndsAfterAMinuteWithoutComingAnywhereNew) {
+  GridFrame frame;
+  frame.resolution_m = 0.1;
+  frame.width_cells = 120, frame.height_cells = 60;
+  std::vector<Ground> ground(frame.cell_count(), Ground::kBlocked);
+  for (int y = 5; y < 55; ++y)
+    for (int x = 5; x < 115; ++x)
+      if (x < 78 || x > 82) ground[frame.index({x, y})] = x < 30 || x > 82 ? Ground::kFree : Ground::kPlanned;
+  Pair robots({{"robot1", Pose2(1.5, 3, 0)}});
+  robots.fleet.set_map(std::make_shared<const CostMap>(frame, std::move(ground), CostMapParams{}));
+  ASSERT_THAT(robots.board.apply(goal_at("g", {10, 3})), test::IsOk());
+  for (int i = 0; i < 1500 && !is_final(robots.board.find_goal("g")->state); ++i) {
+    robots.poses["robot1"] = Pose2(1.5, 3, 0);  // its wheels spin
+    robots.step();
+  }
+  const Goal& goal = *robots.board.find_goal("g");
+  EXPECT_TRUE(is_final(goal.state));
+  EXPECT_LT(to_seconds(robots.now), 100);
+  EXPECT_FALSE(goal.reason.empty());
+}
+
 TEST(Fleet, AWayIsAskedFromWhereTheRobotIsNow) {
   Pair pair({{"robot1", Pose2(-1, 2, 0)}});
   EXPECT_THAT(pair.fleet.way_question("robot1", {3, 0}), test::Fails(Errc::kNotFound)) << "never heard";

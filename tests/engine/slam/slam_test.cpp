@@ -302,5 +302,41 @@ TEST(RenderMap, HasWallsWhereTheWallsAre) {
   EXPECT_GT(near, 0.98 * walls);
 }
 
+TEST(RenderedMaps, ASurfaceMetAtAGrazingAngleIsNotRubbedOutByTheBeamsAlongIt) {
+  PoseGraph graph;
+  for (int n = 0; n < 8; ++n) {
+    PoseNode node;
+    node.id = n;
+    node.T_map_robot = Pose2(0.3 * n, 0, 0);
+    std::vector<Point2> hits;  // a wall 0.27 m beside the way, ahead: from 60 degrees down to 4
+    for (double angle = 1.05; angle > 0.07; angle -= 0.0175) hits.emplace_back(0.27 / std::tan(angle), 0.27);
+    node.hits_robot = std::make_shared<const std::vector<Point2>>(std::move(hits));
+    graph.nodes.push_back(node);
+  }
+  const OccupancyGrid grid = render_map(graph);
+  int wall = 0, kept = 0, free = 0, cells = 0;
+  for (double x = 0.5; x < 3.0; x += 0.05) {
+    const int percent = grid.at(grid.frame().cell_of({x, 0.27}));
+    ++wall, kept += percent >= 60;
+    ++cells, free += grid.at(grid.frame().cell_of({x, 0.1})) <= 40;
+  }
+  EXPECT_GE(kept, 0.9 * wall);
+  EXPECT_GE(free, 0.9 * cells) << "before it the way is free";
+}
+
+TEST(RenderedMaps, ShowWhatTheRadarSawBesideABlindLidarAndTakeItBack) {
+  PoseGraph graph;
+  PoseNode node;
+  node.radar_hits_robot = std::make_shared<const std::vector<Point2>>(std::vector<Point2>{{2.02, 0.02}});
+  graph.nodes.push_back(node);
+  MapRenderer renderer;
+  EXPECT_EQ(renderer.update(graph), 1);
+  const OccupancyGrid grid = renderer.occupancy();
+  EXPECT_GE(grid.at(grid.frame().cell_of({2.02, 0.02})), 60);
+  graph.nodes[0].radar_hits_robot.reset();
+  EXPECT_EQ(renderer.update(graph), 1);
+  EXPECT_TRUE(renderer.occupancy().empty());
+}
+
 }  // namespace
 }  // namespace smokemap
