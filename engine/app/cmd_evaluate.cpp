@@ -27,7 +27,7 @@ Result<std::vector<std::vector<double>>> read_numbers(const std::string& path, s
   for (int number = 1; std::getline(file, line); ++number) {
     std::istringstream words(line.substr(0, line.find('#')));
     std::vector<double> row;
-    for (double value; words >> value;) row.push_back(value);
+    for (double value = 0; words >> value;) row.push_back(value);
     if (row.empty() && words.eof()) continue;
     if (row.size() < least || !words.eof())
       return fail(Errc::kCorrupt, path + ":" + std::to_string(number) + ": expected numbers");

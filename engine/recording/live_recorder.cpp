@@ -77,12 +77,12 @@ void LiveRecorder::run() {
     }
     const bool due = Steady::now() >= next_flush;
     if (due) next_flush = Steady::now() + period;
-    write(std::move(work), due);
+    write(work, due);
     if (stopping) return;
   }
 }
 
-void LiveRecorder::write(std::deque<Work> work, bool flush) {
+void LiveRecorder::write(const std::deque<Work>& work, bool flush) {
   std::size_t written = 0;
   for (const Work& one : work) {
     if (!*out_) break;

@@ -62,7 +62,7 @@ class LiveRecorder {
   LiveRecorder(std::unique_ptr<std::ostream> out, const LiveRecorderParams& params, OnTrouble on_trouble);
   void push(Work work);
   void run();
-  void write(std::deque<Work> work, bool flush);
+  void write(const std::deque<Work>& work, bool flush);
 
   const LiveRecorderParams params_;
   const OnTrouble on_trouble_;

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/bytes.hpp"
 #include "recording/file_bytes.hpp"
 
 namespace smokemap {
@@ -24,7 +25,7 @@ constexpr int kFreePercent = 25;
 constexpr double kOccupiedThreshold = 0.65;
 constexpr double kFreeThreshold = 0.196;
 constexpr std::size_t kMostCells = 100'000'000;
-constexpr std::size_t kMostYamlBytes = 64 * 1024;
+constexpr std::size_t kMostYamlBytes = 64_KiB;
 constexpr std::size_t kMostMapFileBytes = 400'000'000;
 
 cv::Mat trinary_image(const OccupancyGrid& grid) {
@@ -32,7 +33,7 @@ cv::Mat trinary_image(const OccupancyGrid& grid) {
   cv::Mat image(frame.height_cells, frame.width_cells, CV_8UC1);
   for (int row = 0; row < image.rows; ++row)
     for (int x = 0; x < image.cols; ++x) {
-      const int percent = grid.at({x, image.rows - 1 - row});
+      const std::int8_t percent = grid.at({x, image.rows - 1 - row});
       image.at<std::uint8_t>(row, x) = percent < 0                   ? 205
                                        : percent >= kOccupiedPercent ? 0
                                        : percent <= kFreePercent     ? 254

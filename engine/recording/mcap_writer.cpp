@@ -7,6 +7,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "core/bytes.hpp"
 #include "core/expect.hpp"
 #include "recording/mcap_format.hpp"
 #include "recording/ros_definitions.hpp"
@@ -14,7 +15,7 @@
 namespace smokemap {
 namespace {
 
-constexpr std::size_t kChunkBytes = 768 * 1024;
+constexpr std::size_t kChunkBytes = 768_KiB;
 constexpr int kZstdLevel = 3;
 
 /// One record in the making; the length is filled in at the end.

@@ -45,11 +45,11 @@ struct RosRadar {
   RadarSweep sweep;  ///< robot and T_robot_radar not set
 };
 
-std::optional<RosScan> decode_scan(std::span<const std::uint8_t> cdr);
-std::optional<RosOdometry> decode_odometry(std::span<const std::uint8_t> cdr);
-std::optional<std::vector<RosTransform>> decode_transforms(std::span<const std::uint8_t> cdr);
+std::optional<RosScan> decode_scan(std::span<const std::uint8_t> bytes);
+std::optional<RosOdometry> decode_odometry(std::span<const std::uint8_t> bytes);
+std::optional<std::vector<RosTransform>> decode_transforms(std::span<const std::uint8_t> bytes);
 /// Nothing also for a picture that is no radar sweep (radar_image.hpp).
-std::optional<RosRadar> decode_radar(std::span<const std::uint8_t> cdr);
+std::optional<RosRadar> decode_radar(std::span<const std::uint8_t> bytes);
 
 std::vector<std::uint8_t> encode_scan(const LaserScan& scan, const std::string& frame);
 std::vector<std::uint8_t> encode_odometry(const Odometry& odometry, const std::string& frame,

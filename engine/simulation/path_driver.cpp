@@ -128,7 +128,7 @@ std::size_t PathDriver::visit(const Point2& from, const std::vector<Point2>& way
 }
 
 VelocityCommand PathDriver::drive(const Pose2& T_world_robot) {
-  const Point2 here = T_world_robot.translation();
+  const Point2& here = T_world_robot.translation();
   while (next_ < path_.size()) {
     const double reach = next_ + 1 == path_.size() ? params_.arrive_m : params_.look_ahead_m;
     if ((path_[next_] - here).norm() > reach) break;

@@ -108,8 +108,7 @@ void SegmentWorld::count_or_place(int segment, bool place) {
     const double x0 = a.x() + from * (b.x() - a.x()), x1 = a.x() + to * (b.x() - a.x());
     const int column_end = bucket(std::max(x0, x1) + kTouch, width_);
     for (int column = bucket(std::min(x0, x1) - kTouch, width_); column <= column_end; ++column) {
-      const auto cell =
-          static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
+      const auto cell = index_of(column, row);
       if (!place) {
         ++first_[cell];
         continue;
@@ -144,7 +143,7 @@ std::optional<RayHit> SegmentWorld::cast(const Point2& origin, const Point2& dir
   double best = max_range_m;
   int found = -1;
   while (true) {
-    const auto cell = static_cast<std::size_t>(row * width_ + column);
+    const auto cell = index_of(column, row);
     for (int entry = first_[cell]; entry < first_[cell + 1]; ++entry) {
       const Ends& e = ends_[static_cast<std::size_t>(entry)];
       const double range = meet(e.ax - ox, e.ay - oy, e.bx - ox, e.by - oy, dx, dy);
@@ -185,7 +184,7 @@ double SegmentWorld::clearance_m(const Point2& p, double limit_m) const {
   const int column_end = std::min(bucket(from.x() + limit_m, width_), width_ - 1);
   for (int row = std::max(bucket(from.y() - limit_m, height_), 0); row <= row_end; ++row)
     for (int column = std::max(bucket(from.x() - limit_m, width_), 0); column <= column_end; ++column) {
-      const auto cell = static_cast<std::size_t>(row * width_ + column);
+      const auto cell = index_of(column, row);
       for (int entry = first_[cell]; entry < first_[cell + 1]; ++entry) {
         const Ends& e = ends_[static_cast<std::size_t>(entry)];
         nearest = std::min(nearest, distance({{e.ax, e.ay}, {e.bx, e.by}}, p));

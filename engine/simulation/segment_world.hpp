@@ -65,6 +65,9 @@ class SegmentWorld {
   };
   void build();
   void count_or_place(int segment, bool place);
+  std::size_t index_of(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
+  }
 
   std::vector<WorldSegment> segments_;
   std::vector<DoorLeaf> doors_;

@@ -64,7 +64,6 @@ class SimulatedRobot {
   SimulatedRobotParams params_;
   RobotDrive drive_;
   Stamp now_ = 0;
-  std::uint64_t steps_ = 0;
   Pose2 T_world_scan_start_, T_world_sweep_start_;
   Stamp scan_start_ = 0, sweep_start_ = 0, next_odometry_ = 0;
   std::uint64_t scans_ = 0, sweeps_ = 0;

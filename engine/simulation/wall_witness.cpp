@@ -15,7 +15,7 @@ std::size_t piece_at(double share, std::size_t pieces) {
 
 }  // namespace
 
-WallWitness::WallWitness(std::vector<Segment2> walls) {
+WallWitness::WallWitness(const std::vector<Segment2>& walls) {
   for (const Segment2& line : walls) {
     const auto pieces = static_cast<std::size_t>(std::max(1.0, std::round(line.length() / kPieceM)));
     const Point2 reach(kReachM, kReachM);

@@ -13,7 +13,7 @@ namespace smokemap {
 class WallWitness {
  public:
   /// @param walls  centre lines, world
-  explicit WallWitness(std::vector<Segment2> walls);
+  explicit WallWitness(const std::vector<Segment2>& walls);
 
   /// The robot moved from T_world_start to T_world_end during the scan (the same pose twice for a scan without skew).
   void add(const LaserScan& scan, const Pose2& T_world_start, const Pose2& T_world_end);

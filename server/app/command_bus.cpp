@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/bytes.hpp"
 #include "server/access/permission.hpp"
 #include "server/wire/commands_json.hpp"
 
@@ -10,7 +11,7 @@ namespace {
 
 constexpr int kPage = 500;
 constexpr const char* kUrgent = "emergency_stop";
-constexpr JsonLimits kStoredLimits{64 * 1024 * 1024, 64};
+constexpr JsonLimits kStoredLimits{64_MiB, 64};
 
 CommandReply refusal(const std::string& id, const Error& error, std::optional<std::int64_t> seq = std::nullopt) {
   return {id, seq, to_string(error.code), error.message};

@@ -56,13 +56,13 @@ class CommandBus final : public CommandSink {
   void submit(const Identity& who, CommandMessage message, Reply reply) override;
 
  private:
-  struct Job {
+  struct Job {  // NOLINT(bugprone-exception-escape): no move of it throws
     Identity who;
     CommandMessage message;
     Reply reply;
   };
   void run();
-  CommandReply carry_out(const Job& job);
+  CommandReply carry_out(const Job& asked);
   CommandReply stop_robots(const Job& job, const Command& command);
   std::optional<CommandReply> earlier_answer(const Job& job);
   CommandReply apply_stored(std::int64_t seq, const Job& job, const Command& command);

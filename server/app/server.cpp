@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "core/bytes.hpp"
 #include "core/check.hpp"
 #include "server/app/command_bus.hpp"
 #include "server/http/api.hpp"
@@ -189,7 +190,7 @@ Result<Json> Server::post(const std::string& path, std::string body) {
   const Response response = answered->get_future().get();
   const std::string text = response.body ? *response.body : std::string("{}");
   if (response.status >= 400) return fail(Errc::kInvalidArgument, text);
-  return parse_json(text, {64 * 1024 * 1024, 64});
+  return parse_json(text, {64_MiB, 64});
 }
 
 std::uint16_t Server::port() const { return impl_->port; }

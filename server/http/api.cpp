@@ -4,14 +4,15 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/bytes.hpp"
 #include "server/http/api_pictures.hpp"
 #include "server/http/exports.hpp"
 
 namespace smokemap::server {
 namespace {
 
-constexpr std::size_t kSmallBody = 16 * 1024;
-constexpr std::size_t kCommandBody = 4 * 1024 * 1024;
+constexpr std::size_t kSmallBody = 16_KiB;
+constexpr std::size_t kCommandBody = 4_MiB;
 constexpr int kMostEvents = 1000;
 
 Json identity_json(const Identity& who) {
@@ -39,7 +40,7 @@ Response pair(Access& access, const Request& request) {
 }
 
 Json event_json(const Event& event) {
-  const auto data = parse_json(event.data, {64 * 1024 * 1024, 64});
+  const auto data = parse_json(event.data, {64_MiB, 64});
   return {{"seq", event.seq},
           {"time_ms", event.time_ms},
           {"device", event.who.device},

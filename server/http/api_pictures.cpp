@@ -1,12 +1,13 @@
 #include "server/http/api_pictures.hpp"
 
+#include "core/bytes.hpp"
 #include "server/wire/words.hpp"
 
 namespace smokemap::server {
 namespace {
 
-constexpr std::size_t kMostPictureBytes = 25 * 1024 * 1024;
-constexpr std::size_t kMostReadBody = 16 * 1024;
+constexpr std::size_t kMostPictureBytes = 25_MiB;
+constexpr std::size_t kMostReadBody = 16_KiB;
 constexpr std::int64_t kMostPages = 10'000;
 
 std::string parameter(const Request& request, std::string_view name) {

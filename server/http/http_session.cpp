@@ -17,6 +17,7 @@
 #include <chrono>
 #include <optional>
 
+#include "core/bytes.hpp"
 #include "server/http/net_server.hpp"
 #include "server/http/raw_upgrade.hpp"
 #include "server/http/service.hpp"
@@ -33,8 +34,8 @@ constexpr auto kHeadDeadline = std::chrono::seconds(20);  // also how long an id
 constexpr auto kBodyDeadline = std::chrono::seconds(60);
 constexpr auto kWriteDeadline = std::chrono::seconds(60);
 constexpr auto kDrainDeadline = std::chrono::seconds(2);
-constexpr std::size_t kMostHeadBytes = 16 * 1024;
-constexpr std::size_t kMostDrainedBytes = 1024 * 1024;
+constexpr std::size_t kMostHeadBytes = 16_KiB;
+constexpr std::size_t kMostDrainedBytes = 1_MiB;
 
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
@@ -110,7 +111,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   void write(Response response) {
     admission_ = {};
-    response_bytes_ = response.body ? response.body : std::make_shared<const std::string>();
+    response_bytes_ = response.body ? std::move(response.body) : std::make_shared<const std::string>();
     const std::size_t size = head_only_ ? 0 : response_bytes_->size();
     answer_.emplace();
     answer_->version(11);
@@ -146,7 +147,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void drain(std::size_t so_far) {
     if (so_far > kMostDrainedBytes) return close();
     buffer_.clear();
-    stream_.async_read_some(buffer_.prepare(16 * 1024),
+    stream_.async_read_some(buffer_.prepare(16_KiB),
                             [self = shared_from_this(), so_far](error_code failed, std::size_t n) {
                               if (!failed) self->drain(so_far + n);
                             });

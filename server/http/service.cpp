@@ -105,7 +105,7 @@ Admission HttpService::admit(Request& request) const {
   return admission;
 }
 
-void HttpService::handle(const Admission& admission, Request request, Respond respond) const {
+void HttpService::handle(const Admission& admission, Request request, const Respond& respond) const {
   if (!admission.route) return respond(files_.get(request));
   const auto run = [handler = &admission.route->handler, permit = admission.permit](const Request& r,
                                                                                     const Respond& answer) {

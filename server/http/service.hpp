@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/bytes.hpp"
 #include "server/access/origin.hpp"
 #include "server/access/pairing.hpp"
 #include "server/http/message.hpp"
@@ -38,7 +39,7 @@ struct Admission {
 class HttpService {
  public:
   struct Limits {
-    std::size_t large_body_bytes = 1024 * 1024;  ///< from here on, only a few at a time
+    std::size_t large_body_bytes = 1_MiB;  ///< from here on, only a few at a time
     int most_large_bodies = 4;
   };
 
@@ -51,7 +52,7 @@ class HttpService {
   /// For a socket at /api/live: only Host and Origin; its first message brings the token.
   std::optional<Response> refuse_socket(const Request& request) const;
   /// Calls `respond` exactly once, perhaps later and on another thread.
-  void handle(const Admission& admission, Request request, Respond respond) const;
+  void handle(const Admission& admission, Request request, const Respond& respond) const;
 
  private:
   std::optional<Response> refuse_foreign(const Request& request) const;

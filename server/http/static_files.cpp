@@ -105,7 +105,7 @@ std::string media_type_of(std::string_view path) {
   return "application/octet-stream";
 }
 
-StaticFiles::StaticFiles(std::string root) {
+StaticFiles::StaticFiles(const std::string& root) {
   std::error_code failed;
   root_ = root.empty() ? std::string() : fs::weakly_canonical(root, failed).string();
 }

@@ -12,7 +12,7 @@ namespace smokemap::server {
 /// that the app may have addresses of its own. Texts are gzipped once and kept. Thread-safe.
 class StaticFiles {
  public:
-  explicit StaticFiles(std::string root);
+  explicit StaticFiles(const std::string& root);
 
   Response get(const Request& request);
 

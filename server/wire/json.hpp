@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/bytes.hpp"
 #include "core/result.hpp"
 #include "geometry/pose2.hpp"
 
@@ -15,7 +16,7 @@ namespace smokemap::server {
 using Json = nlohmann::json;
 
 struct JsonLimits {
-  std::size_t max_bytes = 256 * 1024;
+  std::size_t max_bytes = 256_KiB;
   int max_depth = 16;  ///< of nested arrays and objects, counted before parsing: the parser would recurse
 };
 

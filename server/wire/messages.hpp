@@ -30,7 +30,7 @@ struct HelloMessage {
 struct AckMessage {
   std::uint64_t seq = 0;
 };
-struct CommandMessage {
+struct CommandMessage {  // NOLINT(bugprone-exception-escape): no move of it throws
   std::string id;
   std::string name;
   Json data;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/bytes.hpp"
 #include "server/wire/json.hpp"
 #include "session/snapshot.hpp"
 
@@ -78,6 +79,6 @@ std::shared_ptr<const PartState> advance(const PartState& state, const PartTable
 /// Each at most about `max_bytes`. Only the last one carries the new revision: whoever loses the link in between asks
 /// for all of it again.
 std::vector<std::string> delta_messages(Part part, const PartState& state, std::uint64_t from,
-                                        std::size_t max_bytes = 32 * 1024);
+                                        std::size_t max_bytes = 32_KiB);
 
 }  // namespace smokemap::server

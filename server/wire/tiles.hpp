@@ -92,6 +92,6 @@ struct DecodedFrame {
   int type = 0;
   std::vector<DecodedTile> tiles;
 };
-Result<DecodedFrame> decode_map_frame(std::string_view bytes);
+Result<DecodedFrame> decode_map_frame(std::string_view text);
 
 }  // namespace smokemap::server

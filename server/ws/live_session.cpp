@@ -145,7 +145,7 @@ std::optional<LiveSession::Frame> LiveSession::next_part(const LiveState& state)
 
 std::optional<LiveSession::Frame> LiveSession::next_tiles(const LiveState& state) {
   if (complete_seq_ == state.seq && snapshot_ended_) return std::nullopt;
-  const MapFrameHeader header{state.epoch, state.seq, static_cast<double>(world_.clock->now() / 1'000'000)};
+  const MapFrameHeader header{state.epoch, state.seq, static_cast<double>(world_.clock->now()) / 1e6};
   if (complete_seq_ == state.seq) {
     snapshot_ended_ = true;
     return Frame{std::make_shared<const std::string>(end_of_snapshot_frame(header)), true};

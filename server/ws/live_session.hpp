@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/bytes.hpp"
 #include "server/access/pairing.hpp"
 #include "server/wire/command_sink.hpp"
 #include "server/ws/hub.hpp"
@@ -27,10 +28,10 @@ enum CloseCode { kGoingAway = 1001, kNoToken = 4001, kProtocolError = 4003, kToo
 class LiveSession {
  public:
   struct Params {
-    std::size_t control_bytes = 256 * 1024;  ///< then 4008
-    std::size_t losable_bytes = 64 * 1024;   ///< ink is dropped beyond
-    std::size_t frame_bytes = 64 * 1024;     ///< of tiles
-    int credit = 2;                          ///< map frames on their way
+    std::size_t control_bytes = 256_KiB;  ///< then 4008
+    std::size_t losable_bytes = 64_KiB;   ///< ink is dropped beyond
+    std::size_t frame_bytes = 64_KiB;     ///< of tiles
+    int credit = 2;                       ///< map frames on their way
     std::int64_t hello_ms = 5'000;
     double messages_per_s = 200;
     double bytes_per_s = 256 * 1024;  ///< bursts of two seconds are let through

@@ -9,6 +9,7 @@
 #include <boost/beast/websocket/stream.hpp>
 #include <chrono>
 
+#include "core/bytes.hpp"
 #include "server/http/raw_upgrade.hpp"
 #include "server/ws/ws_server.hpp"
 
@@ -20,7 +21,7 @@ namespace beast = boost::beast;
 namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 
-constexpr std::size_t kMostMessageBytes = 256 * 1024;
+constexpr std::size_t kMostMessageBytes = 256_KiB;
 constexpr int kSendBufferBytes = 64 * 1024;  // the kernel would swallow megabytes of stale map for a stalled browser
 constexpr const char* kProtocol = "smokemap.v1";
 
@@ -79,7 +80,7 @@ class WsSession final : public Peer, public std::enable_shared_from_this<WsSessi
         [](websocket::response_type& response) { response.set("Sec-WebSocket-Protocol", kProtocol); }));
     ws_.read_message_max(kMostMessageBytes);
     ws_.auto_fragment(false);
-    ws_.write_buffer_bytes(64 * 1024);
+    ws_.write_buffer_bytes(64_KiB);
     if (!asks_for_our_protocol()) return shut_down();
     ws_.async_accept(request_, [self = shared_from_this()](error_code failed) {
       if (failed) return;
