@@ -85,12 +85,12 @@ std::vector<Gap> gaps_ahead(const LayoutMap& map, const std::vector<LooseEnd>& e
   return gaps;
 }
 
-double covered_share(const Segment2& s, const cv::Mat& covered) {
+double covered_share(const Segment2& s, const cv::Mat& mask) {
   int inside = 0, all = 0;
   for (double t = 1; t < s.length(); t += 1, ++all) {
     const Point2 p = s.a + t * s.direction();
     const int x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
-    if (x >= 0 && y >= 0 && x < covered.cols && y < covered.rows && covered.at<uchar>(y, x)) ++inside;
+    if (x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x)) ++inside;
   }
   return all ? static_cast<double>(inside) / all : 0;
 }

@@ -102,7 +102,7 @@ void paint_sensed(const OccupancyGrid& sensed, const GridFrame& frame, std::vect
   Cell cell;
   for (cell.y = 0; cell.y < from.height_cells; ++cell.y)
     for (cell.x = 0; cell.x < from.width_cells; ++cell.x) {
-      const int percent = sensed.at(cell);
+      const std::int8_t percent = sensed.at(cell);
       if (percent < 0) continue;
       const Cell target = frame.cell_of(from.center_of(cell));
       if (!frame.contains(target)) continue;

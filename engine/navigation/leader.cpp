@@ -32,7 +32,7 @@ std::optional<Pose2> Leader::next(const Path& path, const Pose2& T_map_robot, st
     ahead_m_ = params_.ahead_m;
   }
   if (gave_up()) return std::nullopt;
-  const Point2 here = T_map_robot.translation();
+  const Point2& here = T_map_robot.translation();
   Pose2 place = pose_ahead(path, here, ahead_m_);
   const bool is_end = progress_on(path, here).remaining_m <= ahead_m_;
   if (is_end && heading_rad) place = Pose2(place.translation(), *heading_rad);

@@ -37,7 +37,7 @@ Result<Ok> PilotParams::validate() const {
       .result();
 }
 
-void Pilot::set_target(std::optional<Point2> p_map, std::optional<double> heading_rad) {
+void Pilot::set_target(const std::optional<Point2>& p_map, std::optional<double> heading_rad) {
   target_ = p_map;
   heading_rad_ = heading_rad;
   path_.reset(), planned_at_.reset(), held_up_.reset(), progressed_at_.reset();

@@ -54,7 +54,7 @@ class Pilot {
 
   void set_map(std::shared_ptr<const CostMap> map) { map_ = std::move(map); }
   /// A new target starts afresh; nothing stops the robot.
-  void set_target(std::optional<Point2> p_map, std::optional<double> heading_rad = std::nullopt);
+  void set_target(const std::optional<Point2>& p_map, std::optional<double> heading_rad = std::nullopt);
   /// The same target, moved because the map under it moved.
   void move_target(const Point2& p_map);
   const std::optional<Point2>& target() const { return target_; }
