@@ -22,6 +22,7 @@ Result<Ok> FleetParams::validate() const {
       .in_range("lost_after_s", lost_after_s, stale_after_s, 3600)
       .positive("look_again_s", look_again_s)
       .in_range("look_patience_s", look_patience_s, look_again_s, 36000)
+      .in_range("look_limit_s", look_limit_s, look_again_s, 36000)
       .in_range("smoky_share", smoky_share, 0, 1)
       .in_range("clear_share", clear_share, 0, smoky_share)
       .in_range("explore_pause_s", explore_pause_s, 0, 60)
@@ -202,7 +203,7 @@ void Fleet::go_back(Robot& robot, Stamp now) {
 
 void Fleet::take_goal(Robot& robot, Goal& goal, const Point2& p_map) {
   if (robot.status.goal_id != goal.id)
-    goal.state = GoalState::kSent, robot.avoided.clear(), robot.looking_s = 0, robot.looked_at.reset();
+    goal.state = GoalState::kSent, robot.avoided.clear(), robot.looking_s = robot.looked_s = 0, robot.looked_at.reset();
   robot.status.goal_id = goal.id;
   robot.detour = false;
   robot.p_map_retreat.reset();
@@ -236,9 +237,12 @@ void Fleet::settle_goal(Robot& robot, Stamp now, Goal* goal, const Carrier& carr
   const Stamp before = std::exchange(robot.steered_at, now);
   if (!goal) return;
   if (robot.detour) {
-    robot.looking_s += std::min(1.0, to_seconds(now - before));
+    const double passed_s = std::min(1.0, to_seconds(now - before));
+    robot.looking_s += passed_s, robot.looked_s += passed_s;
     if (robot.looking_s > params_.look_patience_s)
       return give_up(robot, *goal, "no way there was found, and nothing new was seen for a minute");
+    if (robot.looked_s > params_.look_limit_s)
+      return give_up(robot, *goal, "no way there was found; send the robot again once more has been seen");
     robot.last_detour = robot.last.state;
     goal->state = GoalState::kDriving;
     goal->reason = "no way is known yet: looking for one";

@@ -41,6 +41,7 @@ struct FleetParams {
   double lost_after_s = 5.0;
   double look_again_s = 2.0;     ///< between two searches for a way that was not known
   double look_patience_s = 60;   ///< looking for a way without coming anywhere new
+  double look_limit_s = 180;     ///< looking for a way to one goal in all
   double smoky_share = 0.5;      ///< a robot that gives up in such smoke goes back ...
   double clear_share = 0.25;     ///< ... to where it last had this view
   double explore_pause_s = 1.0;  ///< after a place was reached, before the next is chosen
@@ -113,6 +114,7 @@ class Fleet {
     bool detour = false;             ///< no way to the goal is known: the pilot looks for one
     std::optional<Stamp> looked_at;  ///< when a way to the goal was last asked for
     double looking_s = 0;            ///< for a way, without coming anywhere new
+    double looked_s = 0;             ///< for a way to this goal in all
     Stamp steered_at = 0;
     Stamp idle_since = 0;
     bool ever_localized = false;

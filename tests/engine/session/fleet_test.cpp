@@ -29,14 +29,17 @@ std::shared_ptr<const CostMap> half_seen_room() {
 
 struct Pair {
   std::shared_ptr<Recorder> recorder = std::make_shared<Recorder>();
-  Fleet fleet{FleetParams{}, recorder};
+  Fleet fleet;
   Whiteboard board;
   MergedMap merged;
   SketchReading sketch;
   std::map<std::string, Pose2> poses;
   Stamp now = 0;
 
-  explicit Pair(std::map<std::string, Pose2> at) : poses(std::move(at)) { fleet.set_map(half_seen_room()); }
+  explicit Pair(std::map<std::string, Pose2> at, const FleetParams& params = {})
+      : fleet(params, recorder), poses(std::move(at)) {
+    fleet.set_map(half_seen_room());
+  }
   void step(int steps = 1) {
     for (int i = 0; i < steps; ++i) {
       for (auto& [robot, pose] : poses) {
@@ -266,6 +269,30 @@ TEST(Fleet, LookingForAWayEndsAfterAMinuteWithoutComingAnywhereNew) {
   EXPECT_TRUE(is_final(goal.state));
   EXPECT_LT(to_seconds(robots.now), 100);
   EXPECT_FALSE(goal.reason.empty());
+}
+
+TEST(Fleet, LookingForAWayEndsInTheEndAlsoWhereThereIsAlwaysSomethingNew) {
+  FleetParams params;
+  params.look_limit_s = 5;
+  Pair robots({{"robot1", Pose2(1.5, 3, 0)}}, params);
+  GridFrame frame;
+  frame.resolution_m = 0.1;
+  frame.width_cells = 120, frame.height_cells = 60;
+  const auto corridor = [&](int seen_cells) {  // walled off from the goal, and longer whenever somebody looks
+    std::vector<Ground> ground(frame.cell_count(), Ground::kBlocked);
+    for (int y = 5; y < 55; ++y)
+      for (int x = 5; x < 115; ++x)
+        if (x < 78 || x > 82) ground[frame.index({x, y})] = x < seen_cells || x > 82 ? Ground::kFree : Ground::kPlanned;
+    return std::make_shared<const CostMap>(frame, std::move(ground), CostMapParams{});
+  };
+  ASSERT_THAT(robots.board.apply(goal_at("g", {10, 3})), test::IsOk());
+  for (int i = 0; i < 900 && !is_final(robots.board.find_goal("g")->state); ++i) {
+    if (i % 10 == 0) robots.fleet.set_map(corridor(static_cast<int>(10 * robots.poses["robot1"].x()) + 15));
+    robots.step();
+  }
+  const Goal& goal = *robots.board.find_goal("g");
+  EXPECT_EQ(goal.state, GoalState::kFailed);
+  EXPECT_NE(goal.reason.find("send the robot again"), std::string::npos) << goal.reason;
 }
 
 TEST(Fleet, AWayIsAskedFromWhereTheRobotIsNow) {
