@@ -24,7 +24,8 @@ namespace {
 
 constexpr double kAsGoodAsThePlan = 0.25;  ///< a drawing with so much of the best one's score deserves a question
 
-constexpr double kTrusted = 0.935;  ///< of well read plans the mean confidence is higher
+constexpr double kWithoutRooms = 0.49;  ///< what is said of walls then: all are doubtful
+constexpr double kTrusted = 0.935;      ///< of well read plans the mean confidence is higher
 
 /// From pixels of the working picture to pixels of the layout.
 void rescale(LayoutMap& map, double scale) {
@@ -52,6 +53,14 @@ double mean_confidence(const LayoutMap& map) {
     sum += length * map.walls[w].confidence, all += length;
   }
   return all > 0 ? sum / all : 0;
+}
+
+/// Lines that close no room may be the edges of the sheet, glare, or a plan drawn in a way that is not understood.
+void doubt_lines_without_rooms(LayoutMap& map) {
+  if (!map.rooms_px.empty()) return;
+  for (LayoutWall& wall : map.walls)
+    if (!wall.by_person) wall.confidence *= kWithoutRooms;
+  for (LayoutCorner& corner : map.corners) corner.confidence *= kWithoutRooms;
 }
 
 void add_warnings(LayoutMap& map, bool bar) {
@@ -239,6 +248,7 @@ Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& 
   map.width_px = reading.rectified.cols;
   map.height_px = reading.rectified.rows;
   map.rooms_px = find_rooms(map);
+  doubt_lines_without_rooms(map);
   ScaleEvidence evidence{door_widths(map), legible.bar_division_px, sheet_side(reading)};
   if (evidence.bar_division_px) *evidence.bar_division_px /= work.scale;
   map.scale =

@@ -46,6 +46,17 @@ TEST(ReadLayout, ClosesRoomsAtTheirDoors) {
   EXPECT_GE(count_kind(reading->layout, OpeningKind::kDoor), 4);
 }
 
+TEST(ReadLayout, IsSureOfNoWallWhereNoRoomCloses) {
+  cv::Mat picture(900, 1200, CV_8UC3, cv::Scalar::all(245));
+  for (const int y : {150, 400, 700})
+    cv::line(picture, {120, y}, {1050, y}, cv::Scalar::all(20), 12);  // edges of sheets
+  const auto reading = read_layout(picture);
+  ASSERT_TRUE(reading.ok());
+  ASSERT_FALSE(reading->layout.walls.empty());
+  for (const LayoutWall& wall : reading->layout.walls) EXPECT_LT(wall.confidence, 0.5);
+  for (const LayoutWall& wall : office_reading()->layout.walls) EXPECT_GT(wall.confidence, 0.5);
+}
+
 TEST(ReadLayout, GuessesTheScaleFromDoorsAndSaysSo) {
   const auto& reading = office_reading();
   ASSERT_TRUE(reading.ok());
