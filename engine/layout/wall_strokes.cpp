@@ -19,6 +19,7 @@ constexpr double kThinOfAll = 0.5;     ///< where all walls are alike
 constexpr double kAlike = 0.3;         ///< in the logarithm of thickness
 constexpr double kPostReach = 10;      ///< times what strokes that carry on each other may be apart: windows
 constexpr double kLeastPart = 0.02;    ///< of the score of the drawing's best part: less is a word or a bar
+constexpr double kSlender = 15;        ///< times its thickness
 constexpr double kClosed = 1.5;        ///< times an outline's thickness: solid, or two lines that blur made one
 
 /// The value below which `share` of the weight lies.
@@ -107,14 +108,16 @@ std::vector<InkStroke> without_blocks(const std::vector<InkStroke>& strokes, dou
   return kept;
 }
 
-/// Gray blocks (signs on a copy without colour, shaded areas) are not as dark as the walls.
+/// Gray blocks (signs on a copy without colour, shaded areas) are not as dark as the walls. What is many times longer
+/// than thick is no block: fronts are hatched or dotted beside black partitions.
 std::vector<InkStroke> dark_enough(const std::vector<InkStroke>& strokes) {
   std::vector<std::pair<double, double>> darkness;
   for (const auto& s : strokes) darkness.emplace_back(s.darkness, s.length());
   const double usual = weighted_quantile(darkness, 0.6);
   std::vector<InkStroke> kept;
   for (const auto& s : strokes)
-    if (s.darkness > (s.thickness_px >= 5 ? 0.75 : 0.5) * usual) kept.push_back(s);
+    if (s.darkness > (s.thickness_px < 5 ? 0.5 : s.length() < kSlender * s.thickness_px ? 0.75 : 0.3) * usual)
+      kept.push_back(s);
   return kept;
 }
 

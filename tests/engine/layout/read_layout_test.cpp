@@ -46,6 +46,22 @@ TEST(ReadLayout, ClosesRoomsAtTheirDoors) {
   EXPECT_GE(count_kind(reading->layout, OpeningKind::kDoor), 4);
 }
 
+TEST(ReadLayout, KeepsTheGrayFrontOfBlackRooms) {
+  cv::Mat picture(1000, 1300, CV_8UC3, cv::Scalar::all(245));
+  const cv::Rect front(140, 140, 1020, 720);
+  for (int column = 1; column < 6; ++column)
+    cv::line(picture, {140 + 170 * column, 140}, {140 + 170 * column, 860}, cv::Scalar::all(15), 8);
+  for (int row = 1; row < 4; ++row)
+    cv::line(picture, {140, 140 + 180 * row}, {1160, 140 + 180 * row}, cv::Scalar::all(15), 8);
+  cv::rectangle(picture, front, cv::Scalar::all(140), 16);
+  const auto reading = read_layout(picture);
+  ASSERT_TRUE(reading.ok());
+  const std::vector<Segment2> fronts{
+      {{140, 140}, {1160, 140}}, {{1160, 140}, {1160, 860}}, {{1160, 860}, {140, 860}}, {{140, 860}, {140, 140}}};
+  EXPECT_GT(covered_by(fronts, wall_segments(reading->layout), 6), 0.95);
+  EXPECT_EQ(reading->layout.rooms_px.size(), 24U);
+}
+
 TEST(ReadLayout, IsSureOfNoWallWhereNoRoomCloses) {
   cv::Mat picture(900, 1200, CV_8UC3, cv::Scalar::all(245));
   for (const int y : {150, 400, 700})
