@@ -67,7 +67,6 @@ async function* views(anna, withCards = true) {
   await anna.page.click('button.where >> nth=0');
   yield 'a mark';
   const onWall = [4, 8];
-  const fixed = [20, 10];
   const free = [[27, 9.5], [30, 10.5], [33, 9.5], [36, 10.5]]; // apart: two quick taps at one place are a zoom
   for (const [name, words] of Object.entries({ 'what kind of mark': 'Mark', 'a goal': 'Send robot', 'where to fix the plan': 'Fix the plan here', 'a distance': 'Measure' })) {
     await anna.tap(free.pop());
@@ -77,10 +76,6 @@ async function* views(anna, withCards = true) {
     yield name;
     await anna.page.keyboard.press('Escape');
   }
-  await anna.tap(fixed);
-  await opened();
-  yield 'a fixed point';
-  await anna.page.keyboard.press('Escape');
   await anna.tap(onWall);
   await opened();
   await dialog('Judge the wall');
