@@ -53,14 +53,6 @@ describe('for every hand and every eye', { timeout: 300_000 }, () => {
 async function* views(anna, withCards = true) {
   const dialog = (words) => anna.page.click(`[role=dialog] >> text=${words}`);
   const opened = () => anna.page.waitForSelector('[role=dialog]');
-  /** Taps until a card opens: the stand-in's robot may be driving over the place. */
-  const open = async (p) => {
-    for (let tries = 8; tries > 0; tries--) {
-      await anna.tap(p);
-      if (await anna.page.waitForSelector('[role=dialog]', { timeout: 3000 }).catch(() => null)) return;
-    }
-    throw new Error('no card opened');
-  };
   for (const mode of kModes) {
     await anna.mode(mode);
     yield mode;
@@ -75,15 +67,22 @@ async function* views(anna, withCards = true) {
   await anna.page.click('button.where >> nth=0');
   yield 'a mark';
   const onWall = [4, 8];
+  const fixed = [20, 10];
   const free = [[27, 9.5], [30, 10.5], [33, 9.5], [36, 10.5]]; // apart: two quick taps at one place are a zoom
   for (const [name, words] of Object.entries({ 'what kind of mark': 'Mark', 'a goal': 'Send robot', 'where to fix the plan': 'Fix the plan here', 'a distance': 'Measure' })) {
-    await open(free.pop());
+    await anna.tap(free.pop());
+    await opened();
     if (name === 'what kind of mark') yield 'a place';
     await dialog(words);
     yield name;
     await anna.page.keyboard.press('Escape');
   }
-  await open(onWall);
+  await anna.tap(fixed);
+  await opened();
+  yield 'a fixed point';
+  await anna.page.keyboard.press('Escape');
+  await anna.tap(onWall);
+  await opened();
   await dialog('Judge the wall');
   yield 'a wall';
   await anna.page.keyboard.press('Escape');
