@@ -66,6 +66,7 @@ async function* views(anna, withCards = true) {
   await anna.mode('Operate');
   await anna.page.click('button.where >> nth=0');
   yield 'a mark';
+  await anna.showEverything(); // the mark's place may leave the rest of the map outside
   const onWall = [4, 8];
   const fixed = [20, 10];
   const free = [[27, 9.5], [30, 10.5], [33, 9.5], [36, 10.5]]; // apart: two quick taps at one place are a zoom

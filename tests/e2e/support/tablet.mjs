@@ -68,7 +68,9 @@ export class Tablet {
     const box = await target.boundingBox();
     const [cx, cy, resolution, rotation] = (await this.#viewAtRest(target)).split(' ').map(Number);
     if (Math.abs(rotation) > 1e-9) throw new Error('the view is turned');
-    return [box.x + box.width / 2 + (x - cx) / resolution, box.y + box.height / 2 - (y - cy) / resolution];
+    const [right, down] = [box.width / 2 + (x - cx) / resolution, box.height / 2 - (y - cy) / resolution];
+    if (right < 0 || down < 0 || right > box.width || down > box.height) throw new Error(`(${x}, ${y}) is outside of what is shown`);
+    return [box.x + right, box.y + down];
   }
 
   /** A canvas that was just opened is still being fitted to what it shows. */
