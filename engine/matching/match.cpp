@@ -226,7 +226,7 @@ Result<Matcher> Matcher::create(const Segmentation& a, const Segmentation& b, co
   if (const Result<Ok> valid = params.validate(); !valid) return valid.error();
   if (a.regions.empty() || b.regions.empty())
     return fail(Errc::kDegenerate,
-                std::string("the ") + (a.regions.empty() ? "first" : "second") + " map has no region to match");
+                a.regions.empty() ? "the first map has no region to match" : "the second map has no region to match");
   auto maps = std::make_shared<Maps>(Maps{a, b, params, std::nullopt});
   if (params.method == MatchMethod::kStructure) maps->finder.emplace(a, b, params);
   return Matcher(std::move(maps));

@@ -100,8 +100,9 @@ Result<SketchPhoto> read_drawing(const cv::Mat& picture, const SketchPhotoParams
   if (!left_out.empty())
     photo.warnings.push_back("Hatching and steps were left out: " + std::to_string(left_out.size()) + " lines.");
   if (!hatched.empty())
-    photo.warnings.push_back(std::to_string(hatched.size()) +
-                             (hatched.size() == 1 ? " hatched area is" : " hatched areas are") + " taken as filled.");
+    photo.warnings.push_back(std::to_string(hatched.size()) + (hatched.size() == 1
+                                                                   ? " hatched area is taken as filled."
+                                                                   : " hatched areas are taken as filled."));
   if (lines.empty()) return fail(Errc::kDegenerate, "nothing drawn was found in the photograph");
   photo.width_px = bgr->cols;
   photo.height_px = bgr->rows;

@@ -57,6 +57,8 @@ async function* views(anna, withCards = true) {
     await anna.mode(mode);
     yield mode;
   }
+  await anna.page.click('.notices [aria-label=Close]'); // read and put away
+  await anna.page.waitForSelector('.notices [role=status]', { state: 'detached' });
   if (!withCards) return;
   await anna.mode('Prepare');
   for (const step of await anna.page.locator('button.head').all()) {

@@ -23,7 +23,8 @@ const parts = {
     sketch: { size: [1024, 768], warning: '' },
   },
   layout_walls: Object.fromEntries(layoutDocument(planId).walls.map((w, i) => [String(i), { px: w.slice(0, 4), confidence: i % 7 === 5 ? 0.35 : 0.9 }])),
-  walls: {}, links: {}, robots: {}, goals: {}, alerts: {}, people: {},
+  walls: {}, links: {}, robots: {}, goals: {}, people: {},
+  alerts: { 'sketch-no-fit': { text: 'The sketch does not seem to show the building of the plan.', urgent: false } },
   anchors: { a1: { px: [500, 250], map: [20, 10], off_m: 1.4, outlier: true } },
   pois: {
     p1: { kind: 'gas_bottle', label: 'Acetylene, 2 bottles', author: 'Bo', created_ms: Date.now() - 95000, frame: 'layout_px', p: [300, 400], map: [12, 4], sigma_m: 0.2, confidence: 0.95, reason: '', removed: false },

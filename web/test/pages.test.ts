@@ -1,7 +1,7 @@
 /** Pages as text: what they say, how old it is, and what cannot be pressed and why. Rendered without a browser. */
 import type { Component } from 'svelte';
 import { render } from 'svelte/server';
-import { describe, expect, test } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 import MatchRow from '../src/ui/modes/MatchRow.svelte';
 import OperatePanel from '../src/ui/modes/OperatePanel.svelte';
 import PoiSheet from '../src/ui/modes/PoiSheet.svelte';
@@ -9,6 +9,7 @@ import SketchPanel from '../src/ui/modes/SketchPanel.svelte';
 import WallSheet from '../src/ui/modes/WallSheet.svelte';
 import Notices from '../src/ui/Notices.svelte';
 import { contextOf } from '../src/ui/context';
+import { setLanguage } from '../src/ui/i18n.svelte';
 import { MapSettings } from '../src/ui/state/map_settings.svelte';
 import TopBar from '../src/ui/TopBar.svelte';
 import { type Opened, openSession } from './support/open_session';
@@ -145,11 +146,23 @@ describe('what needs eyes now', () => {
       expect(/aria-disabled="true"/.test(shown)).toBe(role === 'observer');
     }
   });
+  test('what the server says is said in the language of the page', async () => {
+    const opened = await page();
+    await opened.delta('alerts', { a: { text: 'This plan does not seem to fit this building.', urgent: true } });
+    await opened.delta('goals', { g1: { robot: 'r1', author: 'Anna', created_ms: 0, frame: 'map', p: [5, 5], heading: null, map: [5, 5], sigma_m: 0.1, state: 'failed', reason: 'the robot cannot get on in the smoke: something stands in the way', remaining_m: null, eta_s: null } });
+    vi.stubGlobal('document', { documentElement: { lang: 'en' } }).stubGlobal('localStorage', { setItem: nothing });
+    await setLanguage('de');
+    expect(words(opened, Notices, {})).toContain('Dieser Plan scheint nicht zu diesem Gebäude zu gehören.');
+    expect(words(opened, OperatePanel, operate)).toContain('der Roboter kommt im Rauch nicht weiter: etwas steht im Weg');
+    await setLanguage('en');
+    vi.unstubAllGlobals();
+  });
   test('alerts come with the urgency that the server gave them', async () => {
     const opened = await page();
     await opened.delta('alerts', { a: { text: 'The robot is on fire', urgent: true }, b: { text: 'Battery low', urgent: false } });
     const shown = html(opened, Notices, {});
     expect(shown).toMatch(/role="alert"[^]*on fire/);
     expect(shown).toMatch(/role="status"[^]*Battery low/);
+    expect(shown.match(/aria-label="Close"/g)).toHaveLength(1); // what is urgent cannot be put away
   });
 });

@@ -1,12 +1,23 @@
 /** Every word on the screen, in one table per language; a missing key does not compile. English is there at once, others when wanted. */
+import { sayer, type Say } from './sentences';
 import { en, type Key } from './words_en';
 
 export type Language = 'en' | 'de';
 export type Words = Readonly<Record<Key, string>>;
 
-const kLoaders: Readonly<Record<Language, () => Promise<Words>>> = {
-  en: () => Promise.resolve(en),
-  de: () => import('./words_de').then(({ de }) => de),
+interface Dictionary {
+  readonly words: Words;
+  /** What the server said, which speaks English. */
+  readonly say: Say;
+}
+const kEnglish: Dictionary = { words: en, say: (text) => text };
+
+const kLoaders: Readonly<Record<Language, () => Promise<Dictionary>>> = {
+  en: () => Promise.resolve(kEnglish),
+  de: async () => {
+    const [{ de }, { sentencesDe }] = await Promise.all([import('./words_de'), import('./sentences_de')]);
+    return { words: de, say: sayer(sentencesDe) };
+  },
 };
 const kStored = 'smokemap.language';
 
@@ -17,7 +28,7 @@ function preferred(): Language {
 }
 
 let language = $state<Language>('en');
-let words = $state.raw<Words>(en);
+let dictionary = $state.raw(kEnglish);
 
 export const currentLanguage = (): Language => language;
 
@@ -25,7 +36,7 @@ export const currentLanguage = (): Language => language;
 export async function setLanguage(next: Language): Promise<void> {
   const loaded = await kLoaders[next]().catch(() => undefined);
   if (!loaded) return;
-  words = loaded;
+  dictionary = loaded;
   language = next;
   document.documentElement.lang = next;
   localStorage.setItem(kStored, next);
@@ -35,7 +46,10 @@ export const startLanguage = (): Promise<void> => setLanguage(preferred());
 
 /** The words for `key`, with `{name}` replaced by `values.name`. */
 export function t(key: Key, values: Readonly<Record<string, string | number>> = {}): string {
-  return words[key].replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+  return dictionary.words[key].replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
 }
+
+/** What the server said, in the page's language. */
+export const said = (text: string): string => dictionary.say(text);
 
 export type { Key };

@@ -36,7 +36,7 @@ import {
   undone,
 } from '../../model/preparation';
 import type { Command } from '../../wire/commands';
-import { t } from '../i18n.svelte';
+import { said, t } from '../i18n.svelte';
 import type { Pictures } from './pictures';
 import type { Session } from './session.svelte';
 
@@ -218,7 +218,7 @@ export class Prepare {
 
   #fail(message: string): void {
     this.busy = '';
-    this.#session.toasts.show('warning', message);
+    this.#session.toasts.show('warning', said(message));
   }
 
   holdCorner(index: number, p: LayoutPx): void {
@@ -290,7 +290,7 @@ export class Prepare {
         : await this.#session.api.command(this.#session.newId(), command);
     this.busy = '';
     // What the socket refused was said by the session already.
-    if (!settled.ok && settled.message) this.#session.toasts.show('warning', settled.message);
+    if (!settled.ok && settled.message) this.#session.toasts.show('warning', said(settled.message));
     return settled.ok;
   }
 }
