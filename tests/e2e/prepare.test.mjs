@@ -121,4 +121,21 @@ describe('a plan is prepared', { timeout: 150_000 }, () => {
     assert.ok(Math.abs(floor.metres_per_pixel - 0.025) < 1e-6);
     probe.close();
   });
+
+  test('of two floors on a sheet the one that was not read can be tapped', async () => {
+    const answer = async (act) => {
+      const read = anna.page.waitForResponse(/\/read$/);
+      await act();
+      return (await read).json();
+    };
+    const buffer = await drawnPlan(anna.page, 2);
+    await anna.page.click('.head:has-text("Picture")');
+    const first = await answer(() => anna.page.setInputFiles('[data-testid=plan-file]', { name: 'floors.png', mimeType: 'image/png', buffer }));
+    await until('The sheet shows 2 drawings');
+    const isUpper = ({ walls }) => walls.every(([, y1, , y2]) => y1 < 800 && y2 < 800);
+    await anna.showEverything();
+    const second = await answer(() => anna.tap([600, isUpper(first) ? -1200 : -400]));
+    assert.equal(isUpper(second), !isUpper(first));
+    await until(`${second.walls.length} walls`);
+  });
 });
