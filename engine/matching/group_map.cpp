@@ -20,24 +20,28 @@ std::vector<GroupSide> make_sides(const cv::Mat& labels, const std::vector<int>&
   empty.low = Point2::Constant(std::numeric_limits<double>::infinity());
   empty.high = -empty.low;
   std::vector<GroupSide> sides(groups, empty);
-  const auto group_at = [&](int x, int y) {
-    return x >= 0 && y >= 0 && x < labels.cols && y < labels.rows ? group_of_label[labels.at<unsigned short>(y, x)]
-                                                                  : -1;
-  };
-  for (int y = 0; y < labels.rows; ++y)
+  // A frame of no group around the picture spares every pixel the question whether its neighbour is in the picture.
+  cv::Mat group_of(labels.rows + 2, labels.cols + 2, CV_32SC1, cv::Scalar(-1));
+  for (int y = 0; y < labels.rows; ++y) {
+    const auto* label = labels.ptr<unsigned short>(y);
+    int* group = group_of.ptr<int>(y + 1) + 1;
+    for (int x = 0; x < labels.cols; ++x) group[x] = group_of_label[label[x]];
+  }
+  for (int y = 0; y < labels.rows; ++y) {
+    const int *above = group_of.ptr<int>(y) + 1, *here = group_of.ptr<int>(y + 1) + 1,
+              *below = group_of.ptr<int>(y + 2) + 1;
     for (int x = 0; x < labels.cols; ++x) {
-      const int group = group_at(x, y);
+      const int group = here[x];
       if (group < 0) continue;
       GroupSide& side = sides[static_cast<size_t>(group)];
       side.area_px += 1;
-      if (group_at(x - 1, y) == group && group_at(x + 1, y) == group && group_at(x, y - 1) == group &&
-          group_at(x, y + 1) == group)
-        continue;
+      if (here[x - 1] == group && here[x + 1] == group && above[x] == group && below[x] == group) continue;
       side.rim.emplace_back(x, y);
       const Point2 p = frame * Point2(x, y);
       side.low = side.low.cwiseMin(p);
       side.high = side.high.cwiseMax(p);
     }
+  }
   return sides;
 }
 

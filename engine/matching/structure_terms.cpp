@@ -61,6 +61,31 @@ StructureTerms::StructureTerms(const StructureProblem& problem) : problem_(probl
   const double short_px = kShortestWalk * std::min(b.side_px, problem.scale_b_a * a.side_px);
   log_walk_a_ = (problem.scale_b_a * a.walk.array() + short_px).log();
   log_walk_b_ = (b.walk.array() + short_px).log();
+  tabulate_agreements();
+}
+
+void StructureTerms::tabulate_agreements() {
+  const auto n = static_cast<Eigen::Index>(rows());
+  place_ = Eigen::MatrixXi::Constant(n, cols(), -1);
+  block_ = Eigen::MatrixXi::Constant(n, n, -1);
+  size_t size = 0;
+  for (int i = 0; i < n; ++i) {
+    for (size_t c = 0; c < candidates(i).size(); ++c) place_(i, candidates(i)[c]) = static_cast<int>(c);
+    for (const int k : around_[static_cast<size_t>(i)]) {
+      block_(i, k) = static_cast<int>(size);
+      size += candidates(i).size() * candidates(k).size();
+    }
+  }
+  agreements_.reserve(size);
+  for (int i = 0; i < n; ++i)
+    for (const int k : around_[static_cast<size_t>(i)])
+      for (const int j : candidates(i))
+        for (const int l : candidates(k)) agreements_.push_back(agreement(i, k, j, l));
+}
+
+const double* StructureTerms::agreements(int i, int k, int j) const {
+  const size_t row = static_cast<size_t>(place_(i, j)) * candidates(k).size();
+  return agreements_.data() + static_cast<size_t>(block_(i, k)) + row;
 }
 
 bool StructureTerms::possible(int i, int j) const {
@@ -91,7 +116,7 @@ double StructureTerms::gain_of_without(int i, int j, const std::vector<int>& par
   for (const int k : around_[static_cast<size_t>(i)]) {
     const int l = partner[static_cast<size_t>(k)];
     if (k == i || k == left_out || l < 0) continue;
-    gain += pair_weight(i, k) * agreement(i, k, j, l);
+    gain += pair_weight(i, k) * agreements(i, k, j)[place_(k, l)];
   }
   return gain;
 }
@@ -100,7 +125,8 @@ double StructureTerms::soft_gain(int i, int j, const Eigen::MatrixXd& soft) cons
   double gain = importance(i) * (likeness(i, j) - problem_.threshold);
   for (const int k : around_[static_cast<size_t>(i)]) {
     double sum = 0;
-    for (const int l : candidates(k)) sum += soft(k, l) * agreement(i, k, j, l);
+    const double* agreement = agreements(i, k, j);
+    for (const int l : candidates(k)) sum += soft(k, l) * *agreement++;
     gain += pair_weight(i, k) * sum;
   }
   return gain / importance(i);
@@ -123,7 +149,7 @@ double StructureTerms::support(int i, const std::vector<int>& partner) const {
   for (const int k : around_[static_cast<size_t>(i)]) {
     const int l = partner[static_cast<size_t>(k)];
     if (weight_(i, k) <= 0 || l < 0) continue;
-    sum += weight_(i, k) * agreement(i, k, j, l);
+    sum += weight_(i, k) * agreements(i, k, j)[place_(k, l)];
     total += weight_(i, k);
   }
   return total > 0 ? sum / total : 0;

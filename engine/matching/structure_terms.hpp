@@ -34,16 +34,23 @@ class StructureTerms {
   double support(int i, const std::vector<int>& partner) const;
   /// Weight of P(i, k) and P(k, i) together.
   double pair_weight(int i, int k) const { return weight_(i, k) * importance(i) + weight_(k, i) * importance(k); }
-  /// P: -1..1, symmetric in (i, j) against (k, l).
-  double agreement(int i, int k, int j, int l) const;
 
  private:
+  /// P: -1..1, symmetric in (i, j) against (k, l).
+  double agreement(int i, int k, int j, int l) const;
+  void tabulate_agreements();
+  /// P of i going to j and k, which is around it, going to each of its candidates.
+  const double* agreements(int i, int k, int j) const;
+
   const StructureProblem& problem_;
   std::vector<std::vector<int>> candidates_, around_;  ///< around: regions with weight, sorted
   std::vector<bool> forced_;
   Eigen::MatrixXd weight_;                   ///< structure_weight * w_ik
   Eigen::MatrixXd ax_, ay_, bx_, by_;        ///< unit vectors from region to region, a's turned into b
   Eigen::MatrixXd log_walk_a_, log_walk_b_;  ///< of the way on foot
+  Eigen::MatrixXi place_;                    ///< of j among the candidates of i, or -1
+  Eigen::MatrixXi block_;                    ///< of (i, k): where its part of the table begins, or -1
+  std::vector<double> agreements_;           ///< blocks of candidates of i times candidates of k
 };
 
 }  // namespace smokemap

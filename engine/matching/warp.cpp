@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
+#include <vector>
 
 namespace smokemap {
 namespace {
@@ -51,21 +53,40 @@ void add_demon_steps(const cv::Mat& depth_a, const cv::Mat& seen, float fine_per
   }
 }
 
-void pull_to_pins(const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins, double reach_cells,
-                  const cv::Mat& rigid, cv::Mat& moves) {
+/// How a pin pulls on the moves of a level: the same in every round.
+struct PinPull {
+  cv::Point cell;    ///< of a, where the pin is
+  cv::Vec2f wanted;  ///< cells of b
+  cv::Mat strength;  ///< CV_32FC1, 1 at the cell
+};
+
+std::vector<PinPull> pulls_of(const MapRaster& a, const MapRaster& b, const std::vector<Pin>& pins,
+                              double reach_cells) {
+  std::vector<PinPull> pulls;
   for (const Pin& pin : pins) {
-    const Point2 at = a.to_cells(pin.p_a_px);
-    const int cx = std::clamp(static_cast<int>(std::lround(at.x())), 0, moves.cols - 1);
-    const int cy = std::clamp(static_cast<int>(std::lround(at.y())), 0, moves.rows - 1);
-    const Point2 wanted = b.to_cells(pin.p_b_px);
-    const cv::Vec2f here = rigid.at<cv::Vec2f>(cy, cx) + moves.at<cv::Vec2f>(cy, cx);
-    const cv::Vec2f miss(static_cast<float>(wanted.x()) - here[0], static_cast<float>(wanted.y()) - here[1]);
-    for (int y = 0; y < moves.rows; ++y)
-      for (int x = 0; x < moves.cols; ++x) {
-        const double squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
-        const auto pull = static_cast<float>(std::exp(-squared / (2 * reach_cells * reach_cells)));
-        moves.at<cv::Vec2f>(y, x) += pull * miss;
+    const Point2 at = a.to_cells(pin.p_a_px), to = b.to_cells(pin.p_b_px);
+    PinPull pull{{std::clamp(static_cast<int>(std::lround(at.x())), 0, a.depth.cols - 1),
+                  std::clamp(static_cast<int>(std::lround(at.y())), 0, a.depth.rows - 1)},
+                 {static_cast<float>(to.x()), static_cast<float>(to.y())},
+                 cv::Mat(a.depth.size(), CV_32FC1)};
+    for (int y = 0; y < a.depth.rows; ++y)
+      for (int x = 0; x < a.depth.cols; ++x) {
+        const double squared = (x - pull.cell.x) * (x - pull.cell.x) + (y - pull.cell.y) * (y - pull.cell.y);
+        pull.strength.at<float>(y, x) = static_cast<float>(std::exp(-squared / (2 * reach_cells * reach_cells)));
       }
+    pulls.push_back(std::move(pull));
+  }
+  return pulls;
+}
+
+void pull_to_pins(const std::vector<PinPull>& pulls, const cv::Mat& rigid, cv::Mat& moves) {
+  for (const PinPull& pull : pulls) {
+    const cv::Vec2f miss = pull.wanted - (rigid.at<cv::Vec2f>(pull.cell) + moves.at<cv::Vec2f>(pull.cell));
+    for (int y = 0; y < moves.rows; ++y) {
+      const auto* strength = pull.strength.ptr<float>(y);
+      auto* move = moves.ptr<cv::Vec2f>(y);
+      for (int x = 0; x < moves.cols; ++x) move[x] += strength[x] * miss;
+    }
   }
 }
 
@@ -114,11 +135,12 @@ BendingPair::BendingPair(const MapRaster& a, const MapRaster& b)
 void BendingPair::run_stage(const Level& level, double smooth_cells, int rounds, const std::vector<Pin>& pins,
                             const cv::Mat& rigid, cv::Mat& moves) {
   const double sigma = smooth_cells / level.fine_per_cell;
+  const std::vector<PinPull> pulls = pulls_of(level.a, level.b, pins, 2 * sigma);
   for (int round = 0; round < rounds; ++round) {
     add_demon_steps(level.a.depth, look_up(level.seen_b, rigid + moves), static_cast<float>(level.fine_per_cell),
                     moves);
     cv::GaussianBlur(moves, moves, cv::Size(0, 0), sigma, sigma, cv::BORDER_REPLICATE);
-    pull_to_pins(level.a, level.b, pins, 2 * sigma, rigid, moves);
+    pull_to_pins(pulls, rigid, moves);
   }
 }
 
