@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <set>
+#include <utility>
 
 #include "geometry/angle.hpp"
 
@@ -13,9 +15,9 @@ constexpr double kCell_m = 0.05;
 constexpr double kMargin_m = 3;
 constexpr std::size_t kMaxHits = 240;
 constexpr int kMaxSide_cells = 4000;
-constexpr double kPriorWeight =
-    0.02;                         ///< of a squared sigma against the share of hits on walls: some 25 independent looks
-constexpr std::size_t kKeep = 5;  ///< alignments that are handed on for a closer look
+constexpr double kMostLooks = 25;  ///< independent ones at most, however much was seen
+constexpr double kLook_m = 1.0;    ///< hits nearer to each other are one look
+constexpr std::size_t kKeep = 5;   ///< alignments that are handed on for a closer look
 
 /// How well a point of the layout lies on a wall: 1 on a face, falling to 0.
 class WallField {
@@ -86,11 +88,28 @@ struct Span {
   double reach = 0, step = 1;
 };
 
+/// What a guess costs against the share of hits on walls: half a squared sigma is worth one look among so many. It
+/// holds to the end: a few hits along one wall do not turn the plan farther than the guess allows.
+struct Prior {
+  Trial guess;
+  double looks = kMostLooks, sigma_m = 1, sigma_rad = 1, scale_sigma = 1;
+
+  double cost(const Trial& t) const {
+    return 0.5 / looks *
+           ((t.robot_layout - guess.robot_layout).squaredNorm() / (sigma_m * sigma_m) +
+            std::pow(wrap_angle(t.turn - guess.turn) / sigma_rad, 2) +
+            (t.scale.array() / guess.scale.array()).log().matrix().squaredNorm() / (scale_sigma * scale_sigma));
+  }
+};
+
 /// What the search needs at every step.
 struct Scene {
   const WallField& field;
   double axis_rad = 0;
   const std::vector<Point2>& hits_rel;
+  const Prior* prior = nullptr;  ///< null: anywhere is as good
+
+  double score(const Trial& t) const { return score_of(field, axis_rad, hits_rel, t) - (prior ? prior->cost(t) : 0); }
 };
 
 /// How far apart two trials put the things around the robot.
@@ -100,7 +119,7 @@ bool alike(const Trial& a, const Trial& b, double metres) {
 
 /// All trials on a lattice around the centre; the best few that are not alike, best first.
 std::vector<Trial> lattice(const Scene& scene, const Trial& center, const Span& shift, const Span& turn,
-                           const Span& scale, const StartSearch* prior, std::size_t keep, double apart_m) {
+                           const Span& scale, std::size_t keep, double apart_m) {
   std::vector<Trial> all;
   const auto steps = [](const Span& s) { return static_cast<int>(std::ceil(s.reach / s.step - 1e-9)); };
   for (int u = -steps(scale); u <= steps(scale); ++u)
@@ -112,12 +131,7 @@ std::vector<Trial> lattice(const Scene& scene, const Trial& center, const Span& 
             t.robot_layout += shift.step * Point2(x, y);
             t.turn += h * turn.step;
             t.scale = t.scale.cwiseProduct(Eigen::Vector2d(1 + u * scale.step, 1 + v * scale.step));
-            t.score = score_of(scene.field, scene.axis_rad, scene.hits_rel, t);
-            if (prior != nullptr)
-              t.score -=
-                  kPriorWeight * (std::pow(shift.step * std::hypot(x, y) / prior->sigma_m, 2) +
-                                  std::pow(h * turn.step / prior->sigma_rad, 2) +
-                                  t.scale.array().log().matrix().squaredNorm() / std::pow(prior->scale_sigma, 2));
+            t.score = scene.score(t);
             all.push_back(t);
           }
   std::stable_sort(all.begin(), all.end(), [](const Trial& a, const Trial& b) { return a.score > b.score; });
@@ -132,10 +146,18 @@ std::vector<Trial> lattice(const Scene& scene, const Trial& center, const Span& 
 Trial refine(const Scene& scene, Trial t) {
   for (const double step : {0.1, 0.04}) {
     const Trial best =
-        lattice(scene, t, {step, step}, {0.3 * step, 0.15 * step}, {0.3 * step, 0.3 * step}, nullptr, 1, 1).front();
+        lattice(scene, t, {step, step}, {0.3 * step, 0.15 * step}, {0.3 * step, 0.3 * step}, 1, 1).front();
     if (best.score > t.score) t = best;
   }
   return t;
+}
+
+/// Metres of surface, as squares of a metre that have hits.
+double independent_looks(const std::vector<Point2>& hits_rel) {
+  std::set<std::pair<int, int>> squares;
+  for (const Point2& p : hits_rel)
+    squares.emplace(static_cast<int>(std::floor(p.x() / kLook_m)), static_cast<int>(std::floor(p.y() / kLook_m)));
+  return std::min(kMostLooks, static_cast<double>(squares.size()));
 }
 
 /// Everywhere on a lattice of half a metre, every 5 degrees; the best few dozen are refined.
@@ -158,8 +180,8 @@ std::vector<Trial> search_everywhere(const Scene& coarse, const Scene& fine) {
   all.resize(keep);
   std::vector<Trial> refined;
   for (Trial t : all) {
-    t = lattice(coarse, t, {0.4, 0.2}, {0.08, 0.04}, {0.1, 0.1}, nullptr, 1, 1).front();
-    t.score = score_of(fine.field, fine.axis_rad, fine.hits_rel, t);
+    t = lattice(coarse, t, {0.4, 0.2}, {0.08, 0.04}, {0.1, 0.1}, 1, 1).front();
+    t.score = fine.score(t);
     refined.push_back(refine(fine, t));
   }
   return refined;
@@ -222,16 +244,23 @@ Result<std::vector<PlanAlignment>> align_plan(const PlanModel& plan, const std::
   std::vector<Point2> hits_rel;
   for (const Point2& p : hits_map) hits_rel.push_back(p - robot_map);
   const WallField coarse_field(plan, 0.35), fine_field(plan, 0.15);
-  const Scene coarse{coarse_field, plan.axis_rad, hits_rel}, fine{fine_field, plan.axis_rad, hits_rel};
+  std::optional<Prior> prior;
+  if (search.guess)
+    prior = Prior{{search.guess->inverse() * robot_map, search.guess->T_a_b.heading(),
+                   Eigen::Vector2d::Constant(search.guess->scale), -1},
+                  independent_looks(hits_rel),
+                  search.sigma_m,
+                  search.sigma_rad,
+                  search.scale_sigma};
+  const Prior* const held = prior ? &*prior : nullptr;
+  const Scene coarse{coarse_field, plan.axis_rad, hits_rel, held}, fine{fine_field, plan.axis_rad, hits_rel, held};
   std::vector<Trial> trials;
-  if (search.guess) {
-    const Trial start{search.guess->inverse() * robot_map, search.guess->T_a_b.heading(),
-                      Eigen::Vector2d::Constant(search.guess->scale), -1};
+  if (prior) {
     const double shift = std::clamp(2.5 * search.sigma_m, 0.2, 2.5),
                  turn = std::clamp(2.5 * search.sigma_rad, 0.05, 0.6);
-    for (Trial t : lattice(coarse, start, {shift, std::max(0.15, shift / 8)}, {turn, std::max(0.03, turn / 6)},
-                           {2 * search.scale_sigma, search.scale_sigma}, &search, kKeep, 0.3)) {
-      t.score = score_of(fine_field, plan.axis_rad, hits_rel, t);
+    for (Trial t : lattice(coarse, prior->guess, {shift, std::max(0.15, shift / 8)}, {turn, std::max(0.03, turn / 6)},
+                           {2 * search.scale_sigma, search.scale_sigma}, kKeep, 0.3)) {
+      t.score = fine.score(t);
       trials.push_back(refine(fine, t));
     }
     trials = distinct(trials, 0.2, kKeep);

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "core/random.hpp"
 #include "layout/read_layout.hpp"
@@ -15,6 +16,9 @@ namespace {
 constexpr double kCell_m = 0.1;
 constexpr double kDoor_m = 1.0;
 constexpr double kLeastRoom_m2 = 4.0;
+constexpr double kOnWall_m = 0.25;
+constexpr double kLeastGap_m = 0.4;
+constexpr double kFar_m = 200;
 constexpr double kBeside_m = 0.5;  ///< from a wall: where is looked for the room there
 
 /// Free space in connected pieces; 0: wall, 1: outside or too small.
@@ -112,6 +116,65 @@ void take_rooms(const LayoutMap& layout, FloorPlan& plan) {
   });
 }
 
+/// Along the edge of a room: where no wall stands.
+std::vector<Segment2> gaps_along(const FloorPlan& plan, const Segment2& edge) {
+  std::vector<Segment2> gaps;
+  std::optional<double> since;
+  const double length = edge.length();
+  for (double s = 0; s <= length + kCell_m; s += kCell_m) {
+    const Point2 p = edge.a + std::min(s, length) * edge.direction();
+    bool walled = s > length;
+    for (std::size_t w = 0; w < plan.walls.size() && !walled; ++w)
+      walled = distance(plan.wall_line(static_cast<int>(w)), p) < kOnWall_m;
+    if (!walled && !since) since = s;
+    if (!walled || !since) continue;
+    if (s - *since >= kLeastGap_m)
+      gaps.push_back({edge.a + std::max(0.0, *since - kOnWall_m) * edge.direction(),
+                      edge.a + std::min(length, s + kOnWall_m) * edge.direction()});
+    since.reset();
+  }
+  return gaps;
+}
+
+int corner_at(FloorPlan& plan, const Point2& p) {
+  const auto nearest =
+      std::min_element(plan.corners.begin(), plan.corners.end(),
+                       [&](const Point2& a, const Point2& b) { return (a - p).norm() < (b - p).norm(); });
+  if ((*nearest - p).norm() < kOnWall_m) return static_cast<int>(nearest - plan.corners.begin());
+  plan.corners.push_back(p);
+  return static_cast<int>(plan.corners.size()) - 1;
+}
+
+/// Looking from here into the direction and a little beside it, most looks meet no wall.
+bool is_outside(const FloorPlan& plan, const Point2& p, const Point2& direction) {
+  int open = 0;
+  for (const double aside : {-0.5, 0.0, 0.5}) {
+    const Segment2 look{p, p + kFar_m * (Pose2(0, 0, aside).rotation() * direction)};
+    bool walled = false;
+    for (std::size_t w = 0; w < plan.walls.size() && !walled; ++w)
+      walled = intersection(look, plan.wall_line(static_cast<int>(w))).has_value();
+    open += !walled;
+  }
+  return open >= 2;
+}
+
+/// Gates that the drawing leaves open are shut: a robot is not to look for its way outside of the building.
+void shut_gates(FloorPlan& plan) {
+  std::vector<Segment2> gates;
+  for (std::size_t r = 0; r < plan.rooms.size(); ++r) {
+    const Polygon ring = plan.outline(static_cast<int>(r));
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      for (const Segment2& gap : gaps_along(plan, {ring[i], ring[(i + 1) % ring.size()]})) {
+        const Point2 outward = -gap.normal();  // rings go counter-clockwise
+        if (is_outside(plan, gap.midpoint() + 0.1 * outward, outward)) gates.push_back(gap);
+      }
+  }
+  for (const Segment2& gate : gates) {
+    const int a = corner_at(plan, gate.a), b = corner_at(plan, gate.b);
+    if (a != b) plan.walls.push_back({a, b, 0.10, Material::kWood, false});
+  }
+}
+
 }  // namespace
 
 Result<LayoutMap> read_drawing(const std::string& path, double metres_per_pixel) {
@@ -139,6 +202,7 @@ Result<FloorPlan> building_of_plan(const LayoutMap& layout, std::uint64_t seed) 
   if (plan.walls.empty()) return fail(Errc::kDegenerate, "the drawing has no walls");
   take_rooms(layout, plan);
   if (plan.rooms.empty()) return fail(Errc::kDegenerate, "the drawing has no rooms");
+  shut_gates(plan);
   cut_doors(plan, seed);
   return plan;
 }

@@ -66,6 +66,37 @@ TEST(AlignPlan, FindsThePlanNearAGuessThatIsOff) {
   for (const Point2& p : plan.corners) EXPECT_LT((found->front().placement * p - truth * p).norm(), 0.25);
 }
 
+/// A robot that has hardly moved sees a few metres of one wall, and what is beside it is not on the plan.
+TEST(AlignPlan, DoesNotTurnThePlanFartherThanAFewHitsAreWorth) {
+  const PlanModel plan = l_shaped_plan();
+  const Point2 robot(2, 2);
+  StartSearch search;
+  search.sigma_m = 0.2;
+  search.sigma_rad = 0.02;
+  search.guess = Similarity2{1, Pose2()};
+  double worst = 0;
+  for (const double tilt : {-0.10, -0.06, 0.06, 0.10}) {
+    std::vector<Point2> hits;
+    for (double t = -1; t < 1; t += 0.05) hits.push_back(Point2(2, 0) + t * Point2(std::cos(tilt), std::sin(tilt)));
+    const auto found = align_plan(plan, hits, robot, search);
+    ASSERT_THAT(found, IsOk());
+    worst = std::max(worst, std::abs(found->front().placement.turn_rad));
+  }
+  EXPECT_LT(worst, 1.5 * search.sigma_rad);
+}
+
+TEST(AlignPlan, TurnsThePlanByAllThatWasSeenWhenMuchWasSeen) {
+  const PlanModel plan = l_shaped_plan();
+  const PlanPlacement truth{0.08, {1, 1}, 0, {0, 0}};
+  StartSearch search;
+  search.sigma_m = 0.2;
+  search.sigma_rad = 0.04;
+  search.guess = Similarity2{1, Pose2()};
+  const auto found = align_plan(plan, hits_on(plan, truth), truth * Point2(2, 2), search);
+  ASSERT_THAT(found, IsOk());
+  EXPECT_NEAR(found->front().placement.turn_rad, 0.08, 0.02);
+}
+
 TEST(AlignPlan, FindsThePlanWithoutAnyHint) {
   const PlanModel plan = l_shaped_plan();
   const PlanPlacement truth{-2.1, {1, 1}, 0, {4, -3}};
