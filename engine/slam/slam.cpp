@@ -107,6 +107,7 @@ class Slam::Impl {
   std::optional<RadarSweep> last_sweep_;
   std::optional<Pose2> T_odom_sweep_;
   bool sweep_is_new_ = false;
+  ScanMemory scan_memory_;  ///< of scans beside a radar
   double smoke_share_ = 0;
   std::optional<Stamp> lidar_stamp_;  ///< of the newest scan
   std::vector<Anchor> anchors_;       ///< one per scan
@@ -160,10 +161,11 @@ ScanPoints Slam::Impl::points_of(const LaserScan& scan) {
   const Twist2 twist = twist_for_straightening();
   if (!last_sweep_ || std::abs(to_seconds(scan.stamp - last_sweep_->stamp)) > kSweepIsFresh_s)
     return surface_points(scan, params_.beams, twist, params_.points);
-  Pose2 T_now_then;
-  if (const auto T_odom_now = odometry_.at(scan.stamp); T_odom_now && T_odom_sweep_)
-    T_now_then = T_odom_now->inverse() * *T_odom_sweep_;
-  const SmokeView view = look_for_smoke(scan, params_.beams, *last_sweep_, T_now_then, params_.radar);
+  const std::optional<Pose2> T_odom_now = odometry_.at(scan.stamp);
+  const Pose2 T_now_then = T_odom_now && T_odom_sweep_ ? T_odom_now->inverse() * *T_odom_sweep_ : Pose2();
+  const EarlierScans earlier{T_odom_now ? &scan_memory_ : nullptr, T_odom_now.value_or(Pose2())};
+  const SmokeView view = look_for_smoke(scan, params_.beams, *last_sweep_, T_now_then, params_.radar, earlier);
+  if (T_odom_now) scan_memory_.remember(scan, params_.beams, *T_odom_now);
   counters_.smoke_beams += std::count(view.beams.begin(), view.beams.end(), true);
   smoke_share_ += kSmokeMemory * (view.share - smoke_share_);
   counters_.smoke_share = smoke_share_;

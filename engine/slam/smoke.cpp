@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "slam/hit_ranges.hpp"
 #include "slam/radar_points.hpp"
 
 namespace smokemap {
@@ -23,6 +24,11 @@ constexpr int kLeastInLine = 5;       ///< ... or pairs of them in line with the
 constexpr double kBeside_m = 0.035;   ///< three sigmas of a lidar
 constexpr double kBesideSlope = 1.2;  ///< of a surface met at 40 degrees
 constexpr double kLoneReach_m = 3.0;  ///< smoke rarely answers from farther away: there it takes the radar's word too
+
+constexpr double kFar_m = 4.0;    ///< smoke answers from farther away once in a thousand echoes of walls
+constexpr double kStays_m = 2.0;  ///< farther away, echoes of smoke are too rare to come twice from one place
+constexpr int kLeastEarlier = 3;  ///< scans remembered ...
+constexpr int kLeastTimes = 2;    ///< ... and how many of them show what stays
 
 enum class Opinion { kNone, kWall, kSmoke };
 
@@ -70,65 +76,60 @@ class RadarRanges {
   std::array<std::vector<double>, kBearings> ranges_;
 };
 
-/// Ranges of the beams that hit, by index; 0 for others and beyond the ends of a scan that is no full turn.
-class HitRanges {
- public:
-  HitRanges(const LaserScan& scan, const BeamConvention& convention)
-      : step_rad_(scan.angle_increment_rad), beams_(static_cast<std::ptrdiff_t>(distinct_beams(scan))) {
-    ranges_.reserve(scan.ranges_m.size());
-    for (const float range : scan.ranges_m)
-      ranges_.push_back(classify(range, scan, convention) == BeamKind::kHit ? static_cast<double>(range) : 0.0);
-    full_turn_ = static_cast<double>(beams_) * std::abs(step_rad_) > 2 * kPi - 1.5 * std::abs(step_rad_);
+/// Does no surface go through this hit? The beams beside it end neither at about its range nor in line with it: on a
+/// straight wall 1/r of three beams at equal angles fulfils 1/a + 1/c = 2 cos(step) / b.
+bool is_lone(const HitRanges& hits, std::ptrdiff_t i) {
+  const double range = hits.at(i);
+  int beside = 0, in_line = 0;
+  for (int k = 1; k <= kNeighbours; ++k) {
+    const double before = hits.at(i - k), after = hits.at(i + k), cosine = 2 * std::cos(k * hits.step_rad());
+    const double slope_m = kBesideSlope * range * k * std::abs(hits.step_rad());
+    for (const double other : {before, after})
+      beside += other > 0 && std::abs(other - range) <= std::max(kBeside_m, slope_m);
+    const auto agrees = [&](double inverse) {
+      return inverse > 0 && std::abs(1 / inverse - range) < std::max(kBeside_m, 0.02 * range);
+    };
+    if (before > 0 && after > 0) in_line += agrees((1 / before + 1 / after) / cosine);
+    if (const double next = hits.at(i - k - k); before > 0 && next > 0) in_line += agrees(cosine / before - 1 / next);
+    if (const double next = hits.at(i + k + k); after > 0 && next > 0) in_line += agrees(cosine / after - 1 / next);
   }
-  double at(std::ptrdiff_t i) const {
-    if (full_turn_) i = (i % beams_ + beams_) % beams_;
-    return i >= 0 && i < beams_ ? ranges_[static_cast<std::size_t>(i)] : 0.0;
-  }
-  /// Does no surface go through this hit? The beams beside it end neither at about its range nor in line with it: on a
-  /// straight wall 1/r of three beams at equal angles fulfils 1/a + 1/c = 2 cos(step) / b.
-  bool is_lone(std::ptrdiff_t i) const {
-    const double range = at(i);
-    int beside = 0, in_line = 0;
-    for (int k = 1; k <= kNeighbours; ++k) {
-      const double before = at(i - k), after = at(i + k), cosine = 2 * std::cos(k * step_rad_);
-      const double slope_m = kBesideSlope * range * k * std::abs(step_rad_);
-      for (const double other : {before, after})
-        beside += other > 0 && std::abs(other - range) <= std::max(kBeside_m, slope_m);
-      const auto agrees = [&](double inverse) {
-        return inverse > 0 && std::abs(1 / inverse - range) < std::max(kBeside_m, 0.02 * range);
-      };
-      if (before > 0 && after > 0) in_line += agrees((1 / before + 1 / after) / cosine);
-      if (const double next = at(i - k - k); before > 0 && next > 0) in_line += agrees(cosine / before - 1 / next);
-      if (const double next = at(i + k + k); after > 0 && next > 0) in_line += agrees(cosine / after - 1 / next);
-    }
-    return beside < kLeastBeside && in_line < kLeastInLine;
-  }
+  return beside < kLeastBeside && in_line < kLeastInLine;
+}
 
- private:
-  double step_rad_;
-  std::ptrdiff_t beams_;
-  bool full_turn_ = false;
-  std::vector<double> ranges_;
-};
+/// What earlier scans say about a hit.
+enum class Stay { kUnknown, kStays, kNew };
+
+Stay look_back(const EarlierScans& earlier, const LaserScan& scan, double angle_rad, double range_m) {
+  if (!earlier.memory || range_m < kStays_m || earlier.memory->scans(scan.stamp) < kLeastEarlier) return Stay::kUnknown;
+  const Point2 p_laser = range_m * Point2(std::cos(angle_rad), std::sin(angle_rad));
+  const int times = earlier.memory->times_hit(earlier.T_odom_robot * (scan.T_robot_laser * p_laser), scan.stamp);
+  if (times >= kLeastTimes || (times > 0 && range_m > kFar_m)) return Stay::kStays;
+  return times == 0 ? Stay::kNew : Stay::kUnknown;
+}
 
 }  // namespace
 
 SmokeView look_for_smoke(const LaserScan& scan, const BeamConvention& convention, const RadarSweep& sweep,
-                         const Pose2& T_now_then, const RadarParams& params) {
+                         const Pose2& T_now_then, const RadarParams& params, const EarlierScans& earlier) {
   const std::size_t beams = scan.ranges_m.size();
   SmokeView view{std::vector<bool>(beams, false), 0};
   const RadarRanges radar(scan, sweep, T_now_then, params);
   const HitRanges hits(scan, convention);
   std::vector<Opinion> opinions(beams, Opinion::kNone);
-  std::vector<bool> lone(beams, false);
+  std::vector<bool> lone(beams, false), stays(beams, false);
   int expected = 0, shown = 0;
   for (std::size_t i = 0; i < beams; ++i) {
     const double range = hits.at(static_cast<std::ptrdiff_t>(i));
     const double angle = scan.angle_min_rad + static_cast<double>(i) * scan.angle_increment_rad;
     const bool hit = range > 0, too_near = range < params.nearest_m;  // for the radar
     if (hit && !too_near) opinions[i] = radar.ask(angle, range);
-    lone[i] = hit && hits.is_lone(static_cast<std::ptrdiff_t>(i)) && (too_near || !radar.confirms(angle, range)) &&
-              (range < kLoneReach_m || opinions[i] == Opinion::kSmoke);
+    const bool no_surface =
+        hit && is_lone(hits, static_cast<std::ptrdiff_t>(i)) && (too_near || !radar.confirms(angle, range));
+    const Stay stay =
+        no_surface || opinions[i] == Opinion::kSmoke ? look_back(earlier, scan, angle, range) : Stay::kUnknown;
+    stays[i] = stay == Stay::kStays;
+    lone[i] = no_surface && !stays[i] &&
+              (range < kLoneReach_m || opinions[i] == Opinion::kSmoke || (stay == Stay::kNew && range < kFar_m));
     if (hit && too_near && !lone[i]) continue;
     if (hit && !too_near ? opinions[i] == Opinion::kNone : !radar.near_wall(angle)) continue;
     ++expected;
@@ -138,7 +139,7 @@ SmokeView look_for_smoke(const LaserScan& scan, const BeamConvention& convention
   const auto half = std::max<std::ptrdiff_t>(1, std::lround(kSector_rad / std::abs(scan.angle_increment_rad)));
   for (std::size_t i = 0; i < beams; ++i) {
     view.beams[i] = lone[i];
-    if (lone[i] || opinions[i] != Opinion::kSmoke) continue;
+    if (lone[i] || stays[i] || opinions[i] != Opinion::kSmoke) continue;
     int says_smoke = 0, says_wall = 0;
     for (std::ptrdiff_t j = static_cast<std::ptrdiff_t>(i) - half; j <= static_cast<std::ptrdiff_t>(i) + half; ++j) {
       if (j < 0 || j >= static_cast<std::ptrdiff_t>(beams)) continue;

@@ -51,13 +51,15 @@ class PoseLookup {
  public:
   PoseLookup(const Trajectory& estimate, const std::vector<Odometry>& odometry, double longest_gap_s)
       : poses_(by_stamp(estimate)), odometry_(odometry), longest_gap_s_(longest_gap_s) {
-    for (std::size_t i = 0; i < odometry.size(); ++i) {
-      records_.push_back({odometry[i].stamp, i});
-      const StampedPose& pose = poses_[nearest_in_time(poses_, odometry[i].stamp)];
-      if (apart_s(pose.stamp, odometry[i].stamp) < kSameStamp_s) estimated_.push_back({i, pose.T_map_robot});
-    }
+    for (std::size_t i = 0; i < odometry.size(); ++i) records_.push_back({odometry[i].stamp, i});
     std::stable_sort(records_.begin(), records_.end(),
                      [](const Record& a, const Record& b) { return a.stamp < b.stamp; });
+    // Of readings that share a stamp but not a place nobody knows which one the estimate belongs to.
+    for (std::size_t i = 0; i < odometry.size(); ++i) {
+      const StampedPose& pose = poses_[nearest_in_time(poses_, odometry[i].stamp)];
+      if (apart_s(pose.stamp, odometry[i].stamp) < kSameStamp_s && one_place(odometry[i].stamp, kSameStamp_s))
+        estimated_.push_back({i, pose.T_map_robot});
+    }
   }
 
   std::optional<Pose2> at(Stamp stamp) const {
@@ -71,18 +73,7 @@ class PoseLookup {
   }
 
   /// Whether all readings that the stamp may mean were taken at one place.
-  bool is_clear(Stamp stamp) const {
-    const Stamp step = from_seconds(kStampStep_s);
-    auto record = std::lower_bound(records_.begin(), records_.end(), stamp - step,
-                                   [](const Record& r, Stamp t) { return r.stamp < t; });
-    if (record == records_.end() || record->stamp > stamp + step) return false;
-    const Pose2 T_first_odom = odometry_[record->index].T_odom_robot.inverse();
-    for (; record != records_.end() && record->stamp <= stamp + step; ++record) {
-      const Pose2 moved = T_first_odom * odometry_[record->index].T_odom_robot;
-      if (moved.translation().norm() > kOnePlace_m || std::abs(moved.heading()) > kOnePlace_rad) return false;
-    }
-    return true;
-  }
+  bool is_clear(Stamp stamp) const { return one_place(stamp, kStampStep_s); }
 
  private:
   struct Record {
@@ -93,6 +84,20 @@ class PoseLookup {
     std::size_t index = 0;
     Pose2 T_map_robot;
   };
+
+  /// Whether there are readings within `step_s` of the stamp, all taken at one place.
+  bool one_place(Stamp stamp, double step_s) const {
+    const Stamp step = from_seconds(step_s);
+    auto record = std::lower_bound(records_.begin(), records_.end(), stamp - step,
+                                   [](const Record& r, Stamp t) { return r.stamp < t; });
+    if (record == records_.end() || record->stamp > stamp + step) return false;
+    const Pose2 T_first_odom = odometry_[record->index].T_odom_robot.inverse();
+    for (; record != records_.end() && record->stamp <= stamp + step; ++record) {
+      const Pose2 moved = T_first_odom * odometry_[record->index].T_odom_robot;
+      if (moved.translation().norm() > kOnePlace_m || std::abs(moved.heading()) > kOnePlace_rad) return false;
+    }
+    return true;
+  }
 
   Pose2 moved_by_odometry(std::size_t index) const {
     const auto after = std::lower_bound(estimated_.begin(), estimated_.end(), index,

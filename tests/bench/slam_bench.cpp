@@ -1,12 +1,13 @@
-// slam_bench [--data DIR] [--seeds N] [--km FIRST,LAST]: what SLAM reaches, beside what it should.
+// slam_bench [--data DIR] [--rows NAME,...] [--seeds N] [--km FIRST,LAST]: what SLAM reaches, beside what it should.
 //
 // For every log in DIR (CARMEN .log, .log.gz, .clf, rosbag2 .db3, .mcap): relation error where NAME.relations lies
 // beside it, over all relations and over those whose stamps mean one place only (trajectory_error.hpp says why); error
 // against NAME.ref.txt (a trajectory "t x y heading") where that lies there; CPU seconds and how many times faster than
 // the robot that is, reading included; peak memory; time of the front end per scan.
 // Always: generated logs of a kilometre (with how many of the loops that were kept are wrong), the simulated twin of
-// Paper VI, and N random buildings full of smoke with the radar alone. With --km only the generated logs of those
-// seeds. Every log runs in a process of its own, so that its memory is its own.
+// Paper VI, and N random buildings full of smoke with the radar alone. --km chooses the seeds of the generated logs,
+// --rows the rows: names of logs in DIR, and km, alike, twin, smoke. Every log runs in a process of its own, so that
+// its memory is its own.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -231,26 +232,39 @@ void smoke(int seeds) {
 }  // namespace
 }  // namespace smokemap::bench
 
-int main(int argc, char** argv) {
-  std::string data;
-  int seeds = 20, first_km = 1, last_km = 0;
-  for (int i = 1; i + 1 < argc; ++i) {
-    if (std::strcmp(argv[i], "--data") == 0) data = argv[i + 1];
-    if (std::strcmp(argv[i], "--seeds") == 0) seeds = std::atoi(argv[i + 1]);
-    if (std::strcmp(argv[i], "--km") == 0) (void)std::sscanf(argv[i + 1], "%d,%d", &first_km, &last_km);
+namespace {
+
+struct Options {
+  std::string data, rows;
+  int seeds = 20, first_km = 1, last_km = smokemap::bench::kLongLogs;
+  bool wants(const std::string& row) const {
+    return rows.empty() || ("," + rows + ",").find("," + row + ",") != std::string::npos;
   }
+};
+
+Options read_options(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i + 1 < argc; ++i) {
+    if (std::strcmp(argv[i], "--data") == 0) options.data = argv[i + 1];
+    if (std::strcmp(argv[i], "--rows") == 0) options.rows = argv[i + 1];
+    if (std::strcmp(argv[i], "--seeds") == 0) options.seeds = std::atoi(argv[i + 1]);
+    if (std::strcmp(argv[i], "--km") == 0) (void)std::sscanf(argv[i + 1], "%d,%d", &options.first_km, &options.last_km);
+  }
+  return options;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   using namespace smokemap::bench;
+  const Options options = read_options(argc, argv);
   print_head();
-  const auto generated = [](int first, int last) {
-    for (const bool alike : {false, true})
-      for (int seed = first; seed <= last; ++seed) in_own_process([=] { generated_log(seed, alike); });
-  };
-  generated(first_km, last_km);
-  if (last_km > 0) return 0;
-  for (const auto& [name, path] : data.empty() ? decltype(logs_in(data)){} : logs_in(data))
-    in_own_process([&name = name, &path = path] { recorded_log(path, name); });
-  if (seeds < 0) return 0;
-  generated(1, kLongLogs);
-  in_own_process(twin);
-  in_own_process([seeds] { smoke(seeds); });
+  if (!options.data.empty())
+    for (const auto& [name, path] : logs_in(options.data))
+      if (options.wants(name)) in_own_process([&name = name, &path = path] { recorded_log(path, name); });
+  for (const bool alike : {false, true})
+    for (int seed = options.first_km; seed <= options.last_km && options.wants(alike ? "alike" : "km"); ++seed)
+      in_own_process([=] { generated_log(seed, alike); });
+  if (options.wants("twin")) in_own_process(twin);
+  if (options.wants("smoke")) in_own_process([&] { smoke(options.seeds); });
 }

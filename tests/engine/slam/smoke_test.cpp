@@ -124,6 +124,27 @@ TEST(SmokeBeams, AreLookedForAcrossTheEndsOfAFullTurnOnly) {
   }
 }
 
+/// One room, the robot standing; a lone echo is put before the wall at 3.4 m, of which the radar says nothing.
+TEST(SmokeBeams, FartherAwayAreToldByTheScansBefore) {
+  std::mt19937_64 random(16);
+  const SegmentWorld walls = build_world(one_room_building());
+  const Pose2 at(walls.low().x() + 0.8, 0.5 * (walls.low().y() + walls.high().y()), 0);
+  RadarSweep sweep = simulate_sweep(walls, at, at, 0, {}, random);
+  std::fill(sweep.power.begin(), sweep.power.end(), 0.0F);  // a radar that has nothing to say
+  const LaserScan clear = simulate_scan(walls, {}, at, at, 0, {}, random).scan;
+  const std::size_t beam = 181;
+  ASSERT_GT(clear.ranges_m[beam], 3.7F);
+  LaserScan scan = clear;
+  scan.ranges_m[beam] = 3.4F;
+  EXPECT_FALSE(look_for_smoke(scan, {}, sweep, {}, {}).beams[beam]) << "the scan alone cannot know";
+  ScanMemory through, onto;
+  for (int k = 0; k < 2; ++k) through.remember(clear, {}, {});
+  EXPECT_FALSE(look_for_smoke(scan, {}, sweep, {}, {}, {&through, {}}).beams[beam]) << "two scans are too few";
+  for (int k = 0; k < 2; ++k) through.remember(clear, {}, {}), onto.remember(scan, {}, {}), onto.remember(scan, {}, {});
+  EXPECT_TRUE(look_for_smoke(scan, {}, sweep, {}, {}, {&through, {}}).beams[beam]) << "it was not there before";
+  EXPECT_FALSE(look_for_smoke(scan, {}, sweep, {}, {}, {&onto, {}}).beams[beam]) << "a post stays";
+}
+
 TEST(SmokeView, OfAScanWithoutAnyEchoSaysNothingOfBeams) {
   std::mt19937_64 random(15);
   const SegmentWorld walls = build_world(one_room_building());

@@ -104,6 +104,29 @@ TEST(RelationError, ToldApartIsWhatStampsOfABurstCannotSay) {
   EXPECT_EQ(unknown->clear, 0u);
 }
 
+/// A logger that stalled stamps ten readings of a driving robot alike; two of them carry scans. The estimate of a scan
+/// was taken for that of all ten readings, and what lies beside them was moved on from half a metre off.
+TEST(RelationError, AnEstimateIsNotThatOfOtherReadingsWithItsStamp) {
+  const Trajectory truth = winding(300, 10);
+  std::vector<Odometry> odometry;
+  Trajectory estimate;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const bool burst = i % 30 >= 10 && i % 30 < 20;
+    const Stamp stamp = burst ? truth[i / 30 * 30 + 10].stamp : truth[i].stamp;
+    odometry.push_back({stamp, "robot", truth[i].T_map_robot, 0, 0});
+    if (i % 30 == 5 || i % 30 == 14 || i % 30 == 18 || i % 30 == 25)
+      estimate.push_back({stamp, truth[i].T_map_robot, Eigen::Matrix3d::Zero()});
+  }
+  std::vector<PoseRelation> relations;  // between readings whose stamps mean one place
+  for (std::size_t i = 5; i + 30 < truth.size(); i += 30)
+    for (const std::size_t j : {i + 3, i + 4, i + 16, i + 20})
+      relations.push_back({truth[i].stamp, truth[j].stamp, truth[i].T_map_robot.inverse() * truth[j].T_map_robot});
+  const auto error = relation_error(estimate, relations, odometry);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->missing, 0u);
+  EXPECT_LT(error->translation_m.most, 1e-9);
+}
+
 TEST(RelationError, NeedsSomethingToCompare) {
   EXPECT_THAT(relation_error({}, {}), Fails(Errc::kDegenerate));
   EXPECT_THAT(relation_error(winding(5, 7), {{from_seconds(1e6), from_seconds(2e6), {}}}), Fails(Errc::kDegenerate));
