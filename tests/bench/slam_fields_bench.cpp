@@ -17,9 +17,9 @@
 
 #include "core/random.hpp"
 #include "grids/log_odds_grid.hpp"
-#include "grids/ndt_grid.hpp"
 #include "slam/align.hpp"
 #include "tests/bench/long_log_figures.hpp"
+#include "tests/support/ndt_grid.hpp"
 
 namespace smokemap::bench {
 namespace {

@@ -5,8 +5,8 @@
 #include "core/random.hpp"
 #include "grids/distance_map.hpp"
 #include "grids/log_odds_grid.hpp"
-#include "grids/ndt_grid.hpp"
 #include "grids/ray.hpp"
+#include "tests/support/ndt_grid.hpp"
 
 namespace smokemap {
 namespace {

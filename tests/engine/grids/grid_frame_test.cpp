@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/random.hpp"
-#include "grids/ndt_grid.hpp"
+#include "tests/support/ndt_grid.hpp"
 
 namespace smokemap {
 namespace {
