@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -21,9 +22,12 @@ constexpr double kSmoke = 0.3;     // 1/m: visibility of about 10 m
 constexpr double kBesideM = 0.30;  // a cell this near to a wall may be called occupied
 constexpr double kGrazeM = 0.10;   // the edge of what is seen is as sharp as this
 constexpr double kThereM = 1.0;
+constexpr double kFarM = 4.0;  // a goal nearer to the start is none
 constexpr double kPictureCellM = 0.025;
 constexpr double kSpreadS = 60;
 constexpr const char* kNoReason = "(no reason given)";
+constexpr double kHoleM = 0.25;  // around a place on a wall
+constexpr double kMostlyKnown = 0.6;
 constexpr int kOccupied = 60, kFree = 40;
 
 double median_of_all(std::vector<double> values) {
@@ -34,8 +38,8 @@ double median_of_all(std::vector<double> values) {
 
 bool is_free(int percent) { return percent >= 0 && percent <= kFree; }
 
-/// Hidden, by more than a cell, from everywhere that the robot was. A beam that grazes an edge clears cells whose
-/// middle lies behind it.
+/// Hidden, by more than cells and poses are wrong by, from everywhere that the robot was. A beam that grazes an edge
+/// clears cells whose middle lies behind it, and a map that is off by 15 cm shows the edge of a view there.
 bool falsely_free(const DemoScenario& demo, const test::MissionResult& r, const Point2& p_world) {
   if (demo.world.walls.clearance_m(p_world, 1.0) < kBesideM) return false;
   const auto seen = [&](const Point2& p) {
@@ -43,9 +47,36 @@ bool falsely_free(const DemoScenario& demo, const test::MissionResult& r, const 
                        [&](const Point2& from) { return demo.world.walls.sees(from, p); });
   };
   if (seen(p_world)) return false;
+  const double graze_m = kGrazeM + r.pose_error_m;
   for (int i = 0; i < 8; ++i)
-    if (seen(p_world + kGrazeM * Point2(std::cos(i * kPi / 4), std::sin(i * kPi / 4)))) return false;
+    if (seen(p_world + graze_m * Point2(std::cos(i * kPi / 4), std::sin(i * kPi / 4)))) return false;
   return true;
+}
+
+/// All that is known around this place is free.
+bool called_free(const OccupancyGrid& sensed, const Point2& p_map) {
+  const GridFrame& frame = sensed.frame();
+  const Cell center = frame.cell_of(p_map);
+  const int reach = static_cast<int>(kHoleM / frame.resolution_m);
+  int known = 0, all = 0;
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx) {
+      const Cell cell{center.x + dx, center.y + dy};
+      if (dx * dx + dy * dy > reach * reach) continue;
+      const int percent = frame.contains(cell) ? sensed.at(cell) : -1;
+      if (percent > kFree) return false;
+      ++all, known += percent >= 0;
+    }
+  return known > kMostlyKnown * all;
+}
+
+double open_wall_m(const DemoScenario& demo, const OccupancyGrid& sensed) {
+  constexpr double kStepM = 0.05;
+  double sum_m = 0;
+  for (const WorldSegment& s : demo.world.walls.segments())
+    for (double t = 0.5 * kStepM; t < s.line.length(); t += kStepM)
+      if (called_free(sensed, demo.to_map(s.line.a + t * s.line.direction()))) sum_m += kStepM;
+  return sum_m;
 }
 
 /// The whole building in map frame.
@@ -122,6 +153,13 @@ class MapPicture {
   cv::Mat picture_;
 };
 
+/// Gives it one, with the thinnest smoke there is, if the chosen one is where the robot starts.
+bool has_far_goal(DemoScenario& demo) {
+  if ((demo.p_world_far_room - demo.T_world_start.translation()).norm() >= kFarM) return true;
+  const std::vector<int> rooms = smoky_rooms(demo);
+  return !rooms.empty() && send_to(demo, rooms.back());
+}
+
 void print_second(const SessionCore& core, double t_s) {
   const Snapshot s = core.snapshot(0);
   if (s.robots.empty()) return;
@@ -151,29 +189,13 @@ MissionOptions mission_options(int argc, char** argv, int seeds) {
   return o;
 }
 
-Result<DemoScenario> mission_in(const RealPlan& plan, const std::string& data, std::uint64_t seed) {
-  const auto layout = read_drawing(data + "/" + plan.file, plan.metres_per_pixel);
-  if (!layout) return layout.error();
-  const auto building = building_of_plan(*layout, seed);
-  if (!building) return building.error();
-  auto random = random_stream(seed, 6);
-  const std::size_t rooms = building->rooms.size(), first = uniform_index(random, rooms);
-  for (std::size_t k = 0; k < rooms; ++k) {
-    const int room = static_cast<int>((first + k) % rooms);
-    const Pose2 start(centroid(building->outline(room)), uniform(random, -kPi, kPi));
-    auto demo = make_demo_in(*building, start, seed);
-    if (demo) return demo;
-  }
-  return fail(Errc::kDegenerate, "no room of this building leads to another");
-}
-
 std::vector<int> smoky_rooms(const DemoScenario& demo) {
   SmokeField smoke = demo.world.smoke;
   smoke.advance(kSpreadS);
   std::vector<std::pair<double, int>> rooms;
   for (std::size_t i = 0; i < demo.building.rooms.size(); ++i) {
     const Polygon ring = demo.building.outline(static_cast<int>(i));
-    if (demo.building.rooms[i].corridor || contains(ring, demo.T_world_start.translation())) continue;
+    if (demo.building.rooms[i].corridor || (centroid(ring) - demo.T_world_start.translation()).norm() < kFarM) continue;
     if (!PathDriver(demo.world.walls).plan(demo.T_world_start.translation(), centroid(ring))) continue;
     rooms.emplace_back(-smoke.extinction_at(centroid(ring)), static_cast<int>(i));
   }
@@ -193,6 +215,31 @@ bool send_to(DemoScenario& demo, int room) {
   return true;
 }
 
+Result<DemoScenario> mission_in(const RealPlan& plan, const std::string& data, std::uint64_t seed) {
+  const auto layout = read_drawing(data + "/" + plan.file, plan.metres_per_pixel);
+  if (!layout) return layout.error();
+  const auto building = building_of_plan(*layout, seed);
+  if (!building) return building.error();
+  auto random = random_stream(seed, 6);
+  const std::size_t rooms = building->rooms.size(), first = uniform_index(random, rooms);
+  const double heading = uniform(random, -kPi, kPi);
+  Result<DemoScenario> clearest = fail(Errc::kDegenerate, "no room of this building leads to another");
+  double least_smoke = std::numeric_limits<double>::infinity();
+  DemoParams params;
+  for (const double burning_s : {240.0, 120.0, 60.0, 30.0})  // a small house is full of smoke sooner
+    for (std::size_t k = 0; k < rooms; ++k) {
+      const int room = static_cast<int>((first + k) % rooms);
+      const Pose2 start(centroid(building->outline(room)), heading);
+      params.burning_s = burning_s;
+      auto demo = make_demo_in(*building, start, seed, params);
+      if (!demo || !has_far_goal(*demo)) continue;
+      const double smoke = demo->world.smoke.extinction_at(start.translation());
+      if (smoke < kSmoke) return demo;
+      if (smoke < least_smoke) least_smoke = smoke, clearest = std::move(demo);
+    }
+  return clearest;
+}
+
 FalseCells count_false(const DemoScenario& demo, const test::MissionResult& r) {
   FalseCells count;
   if (!r.sensed || r.sensed->empty()) return count;
@@ -207,13 +254,14 @@ FalseCells count_false(const DemoScenario& demo, const test::MissionResult& r) {
         ++(r.smoke.extinction_at(p) > kSmoke ? count.occupied_smoke : count.occupied_clear);
       count.free += is_free(percent) && falsely_free(demo, r, p);
     }
+  count.wall_free_m = open_wall_m(demo, *r.sensed);
   return count;
 }
 
 void MissionTable::print_head() const {
   std::printf(
       "mission        room       smoke 1/m  goal       after s  error m  pose m  bumps  plan corners before -> after  "
-      "false wall: clear smoke  false free  CPU s  reason\n");
+      "false wall: clear smoke  false free  wall free m  CPU s  reason\n");
 }
 
 void MissionTable::fly(const std::string& name, const DemoScenario& demo, test::MissionParams params) {
@@ -237,13 +285,14 @@ void MissionTable::fly(const std::string& name, const DemoScenario& demo, test::
   bumps_ += r.bumps;
   false_walls_ += cells.occupied_clear + cells.occupied_smoke;
   false_free_ += cells.free;
+  wall_free_m_ += cells.wall_free_m;
   pose_errors_m_.push_back(r.pose_error_m);
   cpu_s_.push_back(cpu_s);
   if (r.goal != GoalState::kArrived) ++reasons_[r.reason.empty() ? kNoReason : r.reason];
-  std::printf("%-14s %-10s %9.2f  %-9s  %7.1f  %7.2f  %6.2f  %5d  %17.2f -> %5.2f  %16d %5d  %10d  %5.1f  %s\n",
+  std::printf("%-14s %-10s %9.2f  %-9s  %7.1f  %7.2f  %6.2f  %5d  %17.2f -> %5.2f  %16d %5d  %10d  %11.2f  %5.1f  %s\n",
               name.c_str(), demo.far_room.c_str(), r.smoke.extinction_at(demo.p_world_far_room), to_string(r.goal),
               r.time_s, r.goal_error_m, r.pose_error_m, r.bumps, r.before_median_m, r.after_median_m,
-              cells.occupied_clear, cells.occupied_smoke, cells.free, cpu_s, r.reason.c_str());
+              cells.occupied_clear, cells.occupied_smoke, cells.free, cells.wall_free_m, cpu_s, r.reason.c_str());
   for (const test::Bump& bump : r.bumped)
     std::printf("  bump after %.1f s at %.2f %.2f, heading %.2f (world)\n", bump.time_s, bump.T_world_robot.x(),
                 bump.T_world_robot.y(), bump.T_world_robot.heading());
@@ -261,11 +310,11 @@ void MissionTable::print_summary() const {
   std::printf(
       "of %d missions: reached %d (place true within 1 m), refused or given up %d, claimed wrongly %d, still waiting "
       "%d, bumps %d; pose error %.2f m (worst %.2f), CPU %.1f s (worst %.1f), false wall cells %d, false free cells "
-      "%d\n",
+      "%d, walls called free %.2f m\n",
       missions_, reached_, refused_, wrong_, waiting_, bumps_, median_of_all(pose_errors_m_),
       pose_errors_m_.empty() ? 0 : *std::max_element(pose_errors_m_.begin(), pose_errors_m_.end()),
       median_of_all(cpu_s_), cpu_s_.empty() ? 0 : *std::max_element(cpu_s_.begin(), cpu_s_.end()), false_walls_,
-      false_free_);
+      false_free_, wall_free_m_);
   for (const auto& [reason, count] : reasons_) std::printf("%4d  %s\n", count, reason.c_str());
 }
 

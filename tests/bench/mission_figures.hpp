@@ -25,11 +25,11 @@ struct MissionOptions {
 MissionOptions mission_options(int argc, char** argv, int seeds);
 
 /// A mission in the building that a real plan shows: the robot starts in the middle of some room from which others can
-/// be reached. kDegenerate if there is none.
+/// be reached, out of the smoke if there is any such room. kDegenerate if there is none.
 Result<DemoScenario> mission_in(const RealPlan& plan, const std::string& data, std::uint64_t seed);
 
-/// Rooms by their smoke a minute after the robot came, thickest first; those that it starts in or cannot enter are left
-/// out.
+/// Rooms by their smoke a minute after the robot came, thickest first; those beside its start and those that it cannot
+/// enter are left out.
 std::vector<int> smoky_rooms(const DemoScenario& demo);
 
 /// The goal is this room now. False: no way leads there.
@@ -39,6 +39,7 @@ bool send_to(DemoScenario& demo, int room);
 struct FalseCells {
   int occupied_clear = 0, occupied_smoke = 0;  ///< called occupied, and nothing stands within 30 cm
   int free = 0;                                ///< called free, and hidden from everywhere that the robot was
+  double wall_free_m = 0;                      ///< length of what stands there and is called free all around
 };
 FalseCells count_false(const DemoScenario& demo, const test::MissionResult& result);
 
@@ -60,6 +61,7 @@ class MissionTable {
   MissionOptions options_;
   int missions_ = 0, reached_ = 0, refused_ = 0, wrong_ = 0, waiting_ = 0, bumps_ = 0;
   int false_walls_ = 0, false_free_ = 0;
+  double wall_free_m_ = 0;
   std::vector<double> pose_errors_m_, cpu_s_;
   std::map<std::string, int> reasons_;
 };

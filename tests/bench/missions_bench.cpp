@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
       if (const auto rooms = bench::smoky_rooms(*site.demo); !rooms.empty()) bench::send_to(*site.demo, rooms.front());
     test::MissionParams params;
     params.smoke_spreads = true;
+    params.explore_s = 5;  // a small house would be seen before the goal is given
     params.limit_s = 600;
     table.fly(site.name, *site.demo, params);
   }
