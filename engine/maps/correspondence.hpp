@@ -31,7 +31,7 @@ struct Pin {
 };
 
 /// Below this `Matching::same_building` says that the two maps do not seem to belong together.
-constexpr double kFitsFrom = 0.5;
+constexpr double kFitsFrom = 0.55;
 
 /// Region correspondences between two segmented maps, with doubt made visible.
 struct Matching {

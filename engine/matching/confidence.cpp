@@ -7,7 +7,6 @@ namespace smokemap {
 namespace {
 
 constexpr double kScoreSpread = 0.12;  ///< hypotheses worse by this count a third
-constexpr double kCaution = 1.0;       ///< logit: people's habits are wilder than the generator's
 constexpr double kMostSure = 0.97, kLeastSure = 0.02;
 
 }  // namespace
@@ -22,13 +21,13 @@ PairEvidence weigh_pair(const RegionPair& pair, const std::vector<Hypothesis>& a
   PairEvidence evidence;
   evidence.certainty = best.structure.certainty(i, j);
   evidence.likeness = best.scores.likeness(i, j);
-  evidence.is_partner = best.structure.partner[static_cast<size_t>(i)] == j;
+  const bool is_partner = best.structure.partner[static_cast<size_t>(i)] == j;
   double agreeing = 0, total = 0;
   for (const Hypothesis& hypothesis : all) {
     const double weight = weight_beside(hypothesis, best);
     total += weight;
     const bool agrees = hypothesis.structure.partner[static_cast<size_t>(i)] == j ||
-                        (evidence.is_partner == 0 && hypothesis.scores.share_of_b(i, j) > 0.5);
+                        (!is_partner && hypothesis.scores.share_of_b(i, j) > 0.5);
     agreeing += agrees ? weight : 0;
   }
   evidence.agreement = agreeing / total;
@@ -36,7 +35,7 @@ PairEvidence weigh_pair(const RegionPair& pair, const std::vector<Hypothesis>& a
 }
 
 double confidence_of(const PairEvidence& e) {
-  const double logit = -2.3 - kCaution + 1.1 * e.certainty + 1.7 * e.likeness + 1.6 * e.agreement + 1.6 * e.is_partner;
+  const double logit = -4.6 + 0.9 * e.certainty + 2.3 * e.likeness + 5.3 * e.agreement;
   return std::clamp(1 / (1 + std::exp(-logit)), kLeastSure, kMostSure);
 }
 

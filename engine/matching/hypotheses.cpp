@@ -59,9 +59,11 @@ HypothesisFinder::HypothesisFinder(const Segmentation& a, const Segmentation& b,
                                  make_raster(b, kCoarse_cells, kCoarseSlope_cells), Facing::kMirrored);
   const Eigen::MatrixXi none = Eigen::MatrixXi::Zero(graph_a_.size(), graph_b_.size());
   mirrored_score_ = find_among(mirrored, {}, {none, none}).front().score;
+  untapped_ = find_among(alignments_, {}, {none, none});
 }
 
 std::vector<Hypothesis> HypothesisFinder::find(const std::vector<Pin>& pins, const PairRules& rules) const {
+  if (pins.empty() && rules.forced.isZero() && rules.forbidden.isZero()) return untapped_;
   return find_among(alignments_, pins, rules);
 }
 
@@ -82,6 +84,7 @@ FitEvidence HypothesisFinder::weigh_fit(const std::vector<Hypothesis>& all) cons
     if ((other.turn_b_a.determinant() < 0) != is_mirrored) wrong_side = std::max(wrong_side, other.score);
   fit.lead = best.score - wrong_side;
   fit.regions = std::min(graph_a_.size(), graph_b_.size());
+  fit.ratio = static_cast<double>(std::max(graph_a_.size(), graph_b_.size())) / fit.regions;
   return fit;
 }
 

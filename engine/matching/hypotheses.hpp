@@ -52,6 +52,9 @@ class HypothesisFinder {
   /// Best first, no two with the same pairs.
   std::vector<Hypothesis> find(const std::vector<Pin>& pins, const PairRules& rules) const;
 
+  /// What find() says as long as nobody has said anything.
+  const std::vector<Hypothesis>& untapped() const { return untapped_; }
+
   /// What the best of all says about the maps being of one building.
   FitEvidence weigh_fit(const std::vector<Hypothesis>& all) const;
 
@@ -66,6 +69,7 @@ class HypothesisFinder {
   AlignmentSearch alignments_;
   BendingPair bending_;
   RegionGraph graph_a_, graph_b_;
+  std::vector<Hypothesis> untapped_;
   double mirrored_score_ = 0;  ///< of the best hypothesis with a mirrored, which is certainly wrong
 };
 

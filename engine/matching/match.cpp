@@ -27,10 +27,11 @@ namespace {
 constexpr double kPinReach_px = 10;
 constexpr double kClearMargin = 0.25;  ///< from here on the runner-up does not matter
 constexpr double kDoubtfulMargin = 0.08;
-constexpr double kDoubtfulConfidence = 0.6;
+constexpr double kDoubtfulConfidence = 0.5;
 constexpr double kUnknownFit = 0.5;    ///< the published methods do not ask
 constexpr double kMostInDoubt = 0.75;  ///< nothing is shown as sure while the whole is doubtful
 constexpr double kLeastSaid = 0.1;     ///< what is wrong nine times in ten is no pair
+constexpr double kLeastJoined = 0.5;   ///< a region that only joins a pair is said if it is likelier right than wrong
 constexpr double kPinned = 0.97;       ///< a tap may miss the room that was meant
 
 std::optional<int> region_near(const Segmentation& map, const Point2& p_px) {
@@ -136,8 +137,19 @@ double overall_confidence(const Segmentation& a, const std::vector<RegionPair>& 
   return sum / total;
 }
 
+/// Right taps make an answer poorer in the terms it is weighed by (it would have chosen otherwise), so that the answer
+/// without them still counts, unless somebody said that some of it is wrong.
+double chance_of_one_building(const HypothesisFinder& finder, const std::vector<Hypothesis>& all,
+                              const PairRules& rules) {
+  const auto taps = static_cast<int>((rules.forced.rowwise().maxCoeff().array() > 0).count());
+  const double chance = same_building(finder.weigh_fit(all), taps);
+  if (taps == 0 || !rules.forbidden.isZero()) return chance;
+  return std::max(chance, same_building(finder.weigh_fit(finder.untapped()), 0));
+}
+
 void finish(const Segmentation& a, const PairRules& rules, const std::vector<RegionPair>& verdicts,
             const std::vector<Hypothesis>& all, Matching& matching) {
+  const std::vector<int>& partner = all.front().structure.partner;
   matching.pairs = pairs_of(all.front(), rules);
   matching.turn_b_a = all.front().turn_b_a;
   matching.margin = 1;
@@ -150,7 +162,10 @@ void finish(const Segmentation& a, const PairRules& rules, const std::vector<Reg
   const auto is_bound = [&](const RegionPair& pair) { return rules.forced(pair.label_a - 1, pair.label_b - 1) != 0; };
   for (RegionPair& pair : matching.pairs)
     pair.confidence = is_bound(pair) ? kPinned : confidence_of(weigh_pair(pair, all));
-  std::erase_if(matching.pairs, [&](const RegionPair& pair) { return pair.confidence < kLeastSaid; });
+  std::erase_if(matching.pairs, [&](const RegionPair& pair) {
+    const bool joins = partner[static_cast<size_t>(pair.label_a - 1)] != pair.label_b - 1;
+    return pair.confidence < (joins ? kLeastJoined : kLeastSaid);
+  });
   for (RegionPair& pair : matching.runner_up)
     pair.confidence = (1 - matching.margin) * 0.5;  // it is right at most when the best is wrong
   matching.doubtful = matching.margin < kDoubtfulMargin / kClearMargin ||
@@ -239,8 +254,7 @@ Result<Matching> Matcher::solve(const std::vector<Pin>& pins, const std::vector<
   if (!maps_->finder) return match_published(a, b, *rules, verdicts, maps_->params.method);
   Matching matching;
   const std::vector<Hypothesis> all = maps_->finder->find(pins_and_confirmed(a, b, pins, verdicts), *rules);
-  const auto taps = (rules->forced.rowwise().maxCoeff().array() > 0).count();
-  matching.same_building = same_building(maps_->finder->weigh_fit(all), static_cast<int>(taps));
+  matching.same_building = chance_of_one_building(*maps_->finder, all, *rules);
   finish(a, *rules, verdicts, all, matching);
   return matching;
 }

@@ -43,7 +43,7 @@ struct ForeignSums {
 };
 
 std::string building_of(const JudgedPair& pair) {
-  return pair.set == "generated" ? pair.set + pair.name : pair.set.substr(0, pair.set.find('_'));
+  return pair.set == "generated" || pair.set == "stubs" ? pair.set + pair.name : pair.set.substr(0, pair.set.find('_'));
 }
 
 /// Somebody confirms the two largest rooms as they are shown.

@@ -13,8 +13,8 @@ namespace smokemap::bench {
 /// what taps change: the right ones, and those of somebody who confirms whatever is shown on the wrong map. Below it
 /// what came true of all that was said, own and other buildings counting alike.
 ///
-/// @param pairs   of one set only their first annotator; sets of one building begin alike up to '_'; pairs of the set
-///                "generated" are all of different buildings
+/// @param pairs   of one set only their first annotator; sets of one building begin alike up to '_'; pairs of the sets
+///                "generated" and "stubs" are all of different buildings
 /// @param others  further maps of other buildings
 void print_foreign_figures(const std::vector<JudgedPair>& pairs, const std::vector<Segmentation>& others);
 

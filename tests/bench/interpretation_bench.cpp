@@ -93,6 +93,10 @@ int main(int argc, char** argv) {
   print_methods(sketches, every);
   std::printf("\nIs the sketch of this building at all?\n");
   bench::print_foreign_figures(sketches, {});
+  std::printf("\nThe same with stubs of walls in both maps, which split rooms\n");
+  const auto stubs = bench::generated_pairs(generated, 1, segment_for_matching, bench::Wear::kStubs);
+  bench::print_matching_figures(stubs, kTaps, {}, false);
+  bench::print_foreign_figures(stubs, {});
   const Result<Ok> done = data.empty() ? Result<Ok>(Ok{}) : print_judged(data, every);
   if (!done) std::printf("%s\n", done.error().message.c_str());
   std::printf("\npeak memory of all this %.0f MB\n", peak_mb());

@@ -168,16 +168,22 @@ Result<std::vector<JudgedPair>> read_judged_pairs(const std::string& folder, con
   return pairs;
 }
 
-std::vector<JudgedPair> generated_pairs(int count, std::uint64_t first_seed, const Segmenter& segmenter) {
+std::vector<JudgedPair> generated_pairs(int count, std::uint64_t first_seed, const Segmenter& segmenter, Wear wear) {
   std::vector<JudgedPair> pairs;
   for (std::uint64_t seed = first_seed; static_cast<int>(pairs.size()) < count; ++seed) {
     std::mt19937_64 random(seed);
     const test::PlanPicture plan =
         seed % 2 ? test::hall_plan(random) : test::office_plan(random, 2 + static_cast<int>(uniform_index(random, 4)));
-    const test::PlanSketch sketch = test::sketch_of(plan, test::random_habits(random), random);
-    auto a = segment_timed(sketch.picture.free_space, segmenter), b = segment_timed(plan.free_space, segmenter);
+    const auto worn = [&] {
+      const auto most = static_cast<std::uint64_t>(plan.boxes.size() / 3);
+      return wear == Wear::kNone ? plan
+                                 : test::with_stubs(plan, static_cast<int>(uniform_index(random, 1 + most)), random);
+    };
+    const test::PlanPicture map = worn(), remembered = worn();
+    const test::PlanSketch sketch = test::sketch_of(remembered, test::random_habits(random), random);
+    auto a = segment_timed(sketch.picture.free_space, segmenter), b = segment_timed(map.free_space, segmenter);
     if (!a || !b) continue;
-    JudgedPair pair{"generated",
+    JudgedPair pair{wear == Wear::kNone ? "generated" : "stubs",
                     std::to_string(seed),
                     "truth",
                     std::move(a->segmentation),

@@ -36,8 +36,16 @@ struct JudgedPair {
 Result<std::vector<JudgedPair>> read_judged_pairs(const std::string& folder, const std::string& set,
                                                   const Segmenter& segmenter);
 
-/// Sketches made from random buildings the way people draw, with exact truth, one for each seed from `first_seed` on.
-std::vector<JudgedPair> generated_pairs(int count, std::uint64_t first_seed, const Segmenter& segmenter);
+/// How the maps of generated pairs look.
+enum class Wear {
+  kNone,  ///< empty rooms, clean walls
+  kStubs  ///< stubs of walls and pillars in both maps, each its own, that split rooms when they are read
+};
+
+/// Sketches made from random buildings the way people draw, with exact truth, one for each seed from `first_seed` on;
+/// the set is called "generated", or "stubs".
+std::vector<JudgedPair> generated_pairs(int count, std::uint64_t first_seed, const Segmenter& segmenter,
+                                        Wear wear = Wear::kNone);
 
 /// The best that can be said of our regions: those that mostly lie in rooms of one group are pairs, all sure.
 Matching true_matching(const JudgedPair& pair);

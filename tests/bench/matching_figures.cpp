@@ -320,12 +320,14 @@ PairFigures judge_answer(const JudgedPair& pair, const Matching& matching, const
 }
 
 void print_reliability(const std::vector<std::pair<double, bool>>& said) {
-  std::printf("    reliability (said: right of pairs):");
-  for (const auto& [low, high] : {std::pair(0.0, 0.3), {0.3, 0.5}, {0.5, 0.7}, {0.7, 0.9}, {0.9, 1.01}}) {
-    int right = 0, all = 0;
+  std::printf("    reliability, by what was said (mean said: right of pairs, and one sigma of chance):\n     ");
+  for (int decile = 0; decile < 10; ++decile) {
+    double right = 0, all = 0, sum = 0;
     for (const auto& [confidence, is_right] : said)
-      if (confidence >= low && confidence < high) all += 1, right += is_right;
-    std::printf("  %.1f-%.1f %d/%d=%.2f", low, std::min(1.0, high), right, all, all ? double(right) / all : 0.0);
+      if (std::clamp(static_cast<int>(10 * confidence), 0, 9) == decile) all += 1, right += is_right, sum += confidence;
+    if (all == 0) continue;
+    const double mean = sum / all;
+    std::printf("  %.2f: %.0f/%.0f=%.2f+-%.2f", mean, right, all, right / all, std::sqrt(mean * (1 - mean) / all));
   }
   double ordered = 0, compared = 0;  // of a right and a wrong pair, the right one is said to be surer
   for (const auto& [sure, is_right] : said)

@@ -145,6 +145,24 @@ inline cv::Mat remembered_rooms(const PlanPicture& plan, const SketchHabits& hab
   return rooms;
 }
 
+/// The building with stubs of walls, pillars and cupboards that reach into rooms and corridors: what makes anybody who
+/// reads the map split a room that people call one.
+inline PlanPicture with_stubs(PlanPicture plan, int count, std::mt19937_64& random) {
+  for (int i = 0; i < count; ++i) {
+    const cv::Rect box = plan.boxes[uniform01(random) < 0.4 ? 0 : uniform_index(random, plan.boxes.size())];
+    const auto side = uniform_index(random, 4);
+    const bool is_level = side % 2 == 0;  // from the wall above or below; else from the left or the right
+    const int across = is_level ? box.height : box.width, along = is_level ? box.width : box.height;
+    const int deep = static_cast<int>(across * uniform(random, 0.2, 0.65));
+    const int at = static_cast<int>(uniform(random, 6, along - 9));
+    const int thick = 3 + static_cast<int>(uniform_index(random, 6));
+    const cv::Rect stub = is_level ? cv::Rect(box.x + at, side == 0 ? box.y : box.y + box.height - deep, thick, deep)
+                                   : cv::Rect(side == 1 ? box.x : box.x + box.width - deep, box.y + at, deep, thick);
+    plan.rooms(stub & box).setTo(0), plan.free_space(stub & box).setTo(0);
+  }
+  return plan;
+}
+
 /// Smooth random moves of `sigma` pixels, changing every ten.
 inline cv::Mat pen_shake(const cv::Size& size, double sigma, std::mt19937_64& random) {
   cv::Mat knots(size.height / 10 + 2, size.width / 10 + 2, CV_32FC2), shake;

@@ -18,14 +18,19 @@ std::vector<Hypothesis> hypotheses_of_itself(const Segmentation& map) {
 
 TEST(Confidence, RisesWithEveryKindOfEvidenceAndIsNeverQuiteSure) {
   const PairEvidence none;
-  for (double PairEvidence::*kind :
-       {&PairEvidence::certainty, &PairEvidence::likeness, &PairEvidence::agreement, &PairEvidence::is_partner}) {
+  for (double PairEvidence::*kind : {&PairEvidence::certainty, &PairEvidence::likeness, &PairEvidence::agreement}) {
     PairEvidence some;
     some.*kind = 1;
     EXPECT_GT(confidence_of(some), confidence_of(none));
   }
-  EXPECT_LT(confidence_of({1, 1, 1, 1}), 0.98);
+  EXPECT_LT(confidence_of({1, 1, 1}), 0.98);
   EXPECT_GT(confidence_of(none), 0);
+}
+
+TEST(Confidence, OfWhatAllAnswersAgreeOnIsHighAndOfWhatMostDenyIsLow) {
+  EXPECT_GT(confidence_of({1, 0.8, 1}), 0.9);
+  EXPECT_LT(confidence_of({1, 0.8, 0.2}), 0.35);
+  EXPECT_LT(confidence_of({0, 0, 0}), 0.05);
 }
 
 TEST(Confidence, IsHigherForTheTrueRoomThanForAnother) {
