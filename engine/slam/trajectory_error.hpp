@@ -35,8 +35,8 @@ struct RelationError {
 /// Relation error: e = T_from_to^-1 * estimate, mean over all relations alike.
 /// Source: Kuemmerle et al., Autonomous Robots 27 (2009).
 /// @param odometry  readings in the order of the log; fill stamps between estimates: the poses before and after, moved
-/// by
-///                  odometry, blended. May be empty.
+///                  along and blended. Readings that share a stamp but not a place do not tell where an estimate
+///                  belongs. May be empty.
 /// @param longest_gap_s  a stamp farther than this from every estimate (and reading) is missing
 /// kDegenerate when no relation could be judged.
 Result<RelationError> relation_error(const Trajectory& estimate, const std::vector<PoseRelation>& relations,
