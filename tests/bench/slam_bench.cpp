@@ -1,9 +1,10 @@
 // slam_bench [--data DIR] [--rows NAME,...] [--seeds N] [--km FIRST,LAST]: what SLAM reaches, beside what it should.
 //
 // For every log in DIR (CARMEN .log, .log.gz, .clf, rosbag2 .db3, .mcap): relation error where NAME.relations lies
-// beside it, over all relations and over those whose stamps mean one place only (trajectory_error.hpp says why); error
-// against NAME.ref.txt (a trajectory "t x y heading") where that lies there; CPU seconds and how many times faster than
-// the robot that is, reading included; peak memory; time of the front end per scan.
+// beside it, over all relations and over those whose stamps mean one place only (trajectory_error.hpp says why); where
+// many stamps do not, also over all with the readings that other relations say; error against NAME.ref.txt (a
+// trajectory "t x y heading") where that lies there; CPU seconds and how many times faster than the robot that is,
+// reading included; peak memory; time of the front end per scan.
 // Always: generated logs of a kilometre (with how many of the loops that were kept are wrong), the simulated twin of
 // Paper VI, and N random buildings full of smoke with the radar alone. --km chooses the seeds of the generated logs,
 // --rows the rows: names of logs in DIR, and km, alike, twin, smoke. Every log runs in a process of its own, so that
@@ -25,6 +26,7 @@
 #include "recording/sensor_log.hpp"
 #include "tests/bench/long_log_figures.hpp"
 #include "tests/bench/radar_figures.hpp"
+#include "tests/bench/reading_figures.hpp"
 
 namespace smokemap::bench {
 namespace {
@@ -62,6 +64,7 @@ struct Played {
   Slam slam;
   std::vector<double> scan_ms;
   std::vector<Odometry> odometry;
+  std::vector<std::size_t> reading_of_scan;  ///< the newest reading when it came
   double duration_s = 0;
 };
 
@@ -79,6 +82,7 @@ Played play(const Items& items) {
     const double begin = cpu_s();
     if (!played.slam.add_scan(*scan)) continue;
     played.scan_ms.push_back(1e3 * (cpu_s() - begin));
+    played.reading_of_scan.push_back(std::max<std::size_t>(played.odometry.size(), 1) - 1);
     if (played.scan_ms.size() == 1) first = scan->stamp;
     last = std::max(last, scan->stamp);
     if (played.scan_ms.size() % kOptimizeEveryScans == 0) played.slam.optimize();
@@ -136,6 +140,14 @@ void recorded_log(const std::filesystem::path& path, const std::string& name) {
   for (const auto& r : numbers_of(path.parent_path() / (name + ".ref.txt"), 4))
     reference.push_back({from_seconds(r[0]), Pose2(r[1], r[2], r[3]), Eigen::Matrix3d::Zero()});
   print_row(name, played, relations, reference, spent_s);
+  const ReadingFigures told =
+      told_by_relations(played.slam.trajectory(), played.reading_of_scan, played.odometry, relations);
+  if (20 * told.ambiguous > told.stamps)
+    std::printf(
+        "%12s   %zu of %zu stamps of relations may mean several readings. Each taken for the one that the other "
+        "relations (four fifths) say: %.4f m %.3f deg, largest %.3f; that all say: %.4f m %.3f deg, largest %.3f\n",
+        "", told.ambiguous, told.stamps, told.mean_m, degrees(told.mean_rad), told.most_m, told.best_mean_m,
+        degrees(told.best_mean_rad), told.best_most_m);
   if (const auto goal = kGoals.find(name); goal != kGoals.end())
     std::printf("%12s   to reach: %s\n", "", goal->second.c_str());
 }
