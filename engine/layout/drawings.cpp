@@ -9,10 +9,10 @@ namespace smokemap {
 namespace {
 
 constexpr std::size_t kMostDrawings = 12;
-constexpr double kFarReach = 4.5;     ///< times the widest opening: how far parts of one floor may be apart
-constexpr double kWindowReach = 3.5;  ///< the same for a piece of wall inside the drawing, in line with another
-constexpr int kLeastPiers = 3;        ///< of a front: pieces of one line
-constexpr double kLeastScore = 0.02;  ///< of the best drawing's: below are frames, legends and words
+constexpr double kFarReach = 4.5;         ///< times the widest opening: how far parts of one floor may be apart
+constexpr double kPostReachInside = 3.5;  ///< the same for a piece of wall inside the drawing, in line with another
+constexpr int kLeastPiers = 3;            ///< of a front: pieces of one line
+constexpr double kLeastScore = 0.02;      ///< of the best drawing's: below are frames, legends and words
 
 class Groups {
  public:
@@ -111,7 +111,7 @@ Drawing take_best(std::vector<InkStroke>& walls, double thickness_px, double rea
       const auto inside = [&] {
         return !grows && any_pair(regions[r], [&](const InkStroke& m, const InkStroke& b) {
           return alike(m.thickness_px, b.thickness_px) && b.length() > 2 * b.thickness_px &&
-                 in_line(b, m, kWindowReach * reach_px);
+                 in_line(b, m, kPostReachInside * reach_px);
         });
       };
       if (!carries_on && !(regions[r].length > 0.1 * side_px && far()) && !inside()) {

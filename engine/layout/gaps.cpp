@@ -66,7 +66,8 @@ std::vector<Gap> gaps_ahead(const LayoutMap& map, const std::vector<LooseEnd>& e
     for (std::size_t w = 0; w < map.walls.size(); ++w) {
       if (static_cast<int>(w) == end.wall || map.walls[w].corner_a == end.corner || map.walls[w].corner_b == end.corner)
         continue;
-      Segment2 wall = map.wall_px(static_cast<int>(w));
+      const Segment2 drawn = map.wall_px(static_cast<int>(w));
+      Segment2 wall = drawn;
       if (line_angle_between(wall.heading(), ray.heading()) < 0.6) continue;
       const Point2 more = 0.6 * thickness_px * wall.direction();
       wall = {wall.a - more, wall.b + more};
@@ -75,7 +76,7 @@ std::vector<Gap> gaps_ahead(const LayoutMap& map, const std::vector<LooseEnd>& e
       const double ahead = (*hit - end.p).dot(end.outward);
       if (ahead >= best) continue;
       best = ahead;
-      gap = {{end.p, *hit}, end.corner, -1, static_cast<int>(w), own};
+      gap = {{end.p, closest_point(drawn, *hit)}, end.corner, -1, static_cast<int>(w), own};
     }
     if (best >= reach_px || best < 1) continue;
     const auto key = std::pair{std::min(gap.corner_a, gap.corner_b), std::max(gap.corner_a, gap.corner_b)};

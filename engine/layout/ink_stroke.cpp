@@ -142,7 +142,7 @@ struct Walk {
 };
 
 /// Follows the axis both ways while the cross-section holds. Wider ink (a crossing wall) is walked through, not
-/// counted.
+/// counted; where there is more thinner ink than ink of the stroke's width, the stroke has ended before.
 Walk walk_axis(const Ink& ink, const Segment2& axis, double width) {
   const Point2 u = axis.direction(), n = axis.normal();
   const double length = axis.length();
@@ -150,28 +150,34 @@ Walk walk_axis(const Ink& ink, const Segment2& axis, double width) {
   const double gap_limit = 2 + 0.3 * width;
   Walk walk;
   walk.low = walk.high = 0.5 * length;
-  const auto look = [&](double s, double& gap, double& edge, double& wide) {
+  struct Way {
+    double gap = 0, wide = 0;  ///< samples in a row without ink, and with ink of another width
+    double score = 0, best = 0;
+  };
+  const auto look = [&](double s, Way& way, double& edge, bool inside) {
     const auto cut = cross_section(ink, axis.a + s * u, n, slack);
-    if (!cut) return gap += 1, true;
-    gap = 0;
+    if (!cut) return void(way.gap += 1);
+    way.gap = 0;
     const bool clean =
         cut->width <= 1.5 * width + 1 && cut->width >= 0.5 * width - 1 && std::abs(cut->middle) <= slack + 0.5;
     if (clean || cut->width > width) walk.held.push_back(s);
-    if (!clean) return wide += 1, true;
-    wide = 0;
-    edge = s;
+    way.score += clean ? 1 : cut->width > width ? 0 : -1;
+    if (!clean) return void(way.wide += 1);
+    way.wide = 0;
     walk.clean.push_back(s);
+    if (!inside && way.score < way.best) return;
+    way.best = way.score;
+    edge = s;
     walk.middles.push_back(axis.a + s * u + cut->middle * n);
-    return true;
   };
   for (const double sign : {1.0, -1.0}) {
-    double gap = 0, wide = 0;
+    Way way;
     double& edge = sign > 0 ? walk.high : walk.low;
     for (double s = 0.5 * length + (sign > 0 ? 0 : -1);; s += sign) {
       const bool inside = s >= 0 && s <= length;
-      look(s, gap, edge, wide);
-      if (!inside && (gap > gap_limit || wide > ink.cap_px)) break;
-      if (inside && gap > 3 * gap_limit) break;
+      look(s, way, edge, inside);
+      if (!inside && (way.gap > gap_limit || way.wide > ink.cap_px || way.score < way.best - ink.cap_px)) break;
+      if (inside && way.gap > 3 * gap_limit) break;
       if (s < -20000 || s > 20000) break;
     }
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "layout/edit.hpp"
 #include "layout/gaps.hpp"
@@ -15,6 +16,9 @@ constexpr double kWidestWindow = 0.3;  ///< of the plan's long side
 constexpr double kWidestTread = 0.02;  ///< of the plan's long side: lines so close in a row are stairs and shelves
 constexpr double kAside = 0.6;         ///< rad, between a wall and a line that leads aside from its end
 constexpr double kLined = 0.6;         ///< of a gap no wider than doors are
+constexpr double kNarrowing = 1.3;     ///< times as wide as a passage are the spaces on both its sides
+constexpr double kWiderDoor = 1.3;     ///< times the usual door
+constexpr double kWiderPassage = 1.8;  ///< times the usual door
 constexpr double kFramed = 0.8;        ///< of a wide gap must have a frame drawn along it
 
 /// Share of the gap along which thin lines run within a wall's width.
@@ -121,6 +125,74 @@ void add_glazing(LayoutMap& map, const std::vector<InkStroke>& thin, double thic
   }
 }
 
+/// Half of the doors found so far are wider; nothing below three.
+std::optional<double> usual_door(const LayoutMap& map) {
+  std::vector<double> widths;
+  for (const auto& o : map.openings)
+    if (o.kind == OpeningKind::kDoor) widths.push_back(o.gap_px.length());
+  if (widths.size() < 3) return std::nullopt;
+  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+  std::nth_element(widths.begin(), middle, widths.end());
+  return *middle;
+}
+
+/// How far it is from the place to the next wall or opening, at most the length of the way.
+double free_way(const LayoutMap& map, const Segment2& way) {
+  double free = way.length();
+  const auto stop = [&](const Segment2& line) {
+    if (const auto hit = intersection(way, line)) free = std::min(free, (*hit - way.a).norm());
+  };
+  for (std::size_t w = 0; w < map.walls.size(); ++w) stop(map.wall_px(static_cast<int>(w)));
+  for (const auto& o : map.openings) stop(o.gap_px);
+  return free;
+}
+
+/// How wide the space is along the gap a little way off to one side (-1 or 1); at most `reach_px` each way.
+double space_beside(const LayoutMap& map, const Segment2& gap, int side, double reach_px) {
+  const Point2 u = gap.direction(), away = side * gap.normal();
+  double widest = 0;
+  for (const double depth : {0.5, 1.0}) {
+    const Point2 from = gap.midpoint() + depth * gap.length() * away;
+    widest = std::max(widest, free_way(map, {from, from + reach_px * u}) + free_way(map, {from, from - reach_px * u}));
+  }
+  return widest;
+}
+
+/// Both sides are wider than the gap: a mouth, not the width of a corridor.
+bool is_mouth(const LayoutMap& map, const Segment2& gap) {
+  const double width = gap.length();
+  return std::min(space_beside(map, gap, -1, 2 * width), space_beside(map, gap, 1, 2 * width)) > kNarrowing * width;
+}
+
+bool has_opening(const LayoutMap& map, const Segment2& gap, double thickness_px) {
+  return std::any_of(map.openings.begin(), map.openings.end(), [&](const LayoutOpening& o) {
+    return distance(o.gap_px, gap.midpoint()) < 1.5 * thickness_px || distance(gap, o.gap_px.midpoint()) < thickness_px;
+  });
+}
+
+/// Openings between walls whose ends meet other walls, as at the corner of a hall: where a leaf stands, and where two
+/// such ends face each other across a mouth.
+/// @param aside  lines that close loose ends already
+void add_openings_at_corners(LayoutMap& map, const std::vector<InkStroke>& thin, const std::vector<Segment2>& aside,
+                             double thickness_px, double reach_px) {
+  const auto door = usual_door(map);
+  const double widest_door = door ? std::min(reach_px, kWiderDoor * *door + thickness_px) : reach_px;
+  const double widest = door ? std::min(reach_px, kWiderPassage * *door + thickness_px) : reach_px;
+  auto ends = joined_ends(map);
+  const auto loose = loose_ends(map);
+  ends.insert(ends.end(), loose.begin(), loose.end());
+  for (const auto& gap : gaps_ahead(map, ends, thickness_px, reach_px)) {
+    const double width = gap.segment.length();
+    if (width < 1.5 * thickness_px || has_opening(map, gap.segment, thickness_px)) continue;
+    if (gap.corner_b < 0 && starts_at(aside, gap.segment.a)) continue;
+    const bool mouth = is_mouth(map, gap.segment);
+    if (width < widest_door && (mouth || gap.corner_b >= 0) && has_leaf(gap.segment, thin, thickness_px))
+      map.openings.push_back({gap.segment, OpeningKind::kDoor, 0.6});
+    else if (width < widest && gap.corner_b >= 0 && mouth)
+      map.openings.push_back({gap.segment, OpeningKind::kPassage, 0.4});
+  }
+}
+
 }  // namespace
 
 void close_gaps(LayoutMap& map, const std::vector<InkStroke>& thin, const cv::Mat& covered, double thickness_px,
@@ -151,6 +223,7 @@ void close_gaps(LayoutMap& map, const std::vector<InkStroke>& thin, const cv::Ma
   }
   for (const auto& gap : gaps_ahead(map, joined_ends(map), thickness_px, widest))
     if (lined_share(gap.segment, lines, thickness_px) > kFramed) add_window(map, gap, lines, thickness_px, reach, 0.6);
+  add_openings_at_corners(map, thin, aside, thickness_px, reach);
   for (const auto& line : aside)
     map.openings.push_back(
         {line, has_leaf(line, thin, thickness_px) ? OpeningKind::kDoor : OpeningKind::kPassage, 0.6});

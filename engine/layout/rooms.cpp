@@ -7,6 +7,9 @@ namespace smokemap {
 
 namespace {
 
+constexpr std::size_t kDoorsToKnow = 3;  ///< from which their usual width is known
+constexpr double kLeastRoom = 0.5;       ///< of the square of a door's width
+
 /// Lines that close what the reader left open: from a loose end without an opening to the nearest wall or corner ahead.
 std::vector<Segment2> shutters(const LayoutMap& map, double reach_px) {
   std::vector<Segment2> lines;
@@ -34,6 +37,17 @@ std::vector<Segment2> shutters(const LayoutMap& map, double reach_px) {
   return lines;
 }
 
+/// Nobody goes into a space that much smaller than the square of a door: a shaft, a pillar, a slip.
+double least_room_area(const LayoutMap& map) {
+  std::vector<double> doors;
+  for (const auto& o : map.openings)
+    if (o.kind == OpeningKind::kDoor) doors.push_back(o.gap_px.length());
+  if (doors.size() < kDoorsToKnow) return 0;
+  const auto middle = doors.begin() + static_cast<std::ptrdiff_t>(doors.size() / 2);
+  std::nth_element(doors.begin(), middle, doors.end());
+  return kLeastRoom * *middle * *middle;
+}
+
 }  // namespace
 
 std::vector<Polygon> find_rooms(const LayoutMap& map) {
@@ -59,10 +73,11 @@ std::vector<Polygon> find_rooms(const LayoutMap& map) {
   cv::floodFill(closed, {0, 0}, cv::Scalar(0));
   cv::Mat labels, stats, centroids;
   const int count = cv::connectedComponentsWithStats(closed, labels, stats, centroids, 4);
+  const double least_area = std::max(0.0005 * 1400 * 1400, least_room_area(map) * scale * scale);
   std::vector<std::pair<int, Polygon>> rooms;
   for (int label = 1; label < count; ++label) {
     const int area = stats.at<int>(label, cv::CC_STAT_AREA);
-    if (area < 0.0005 * 1400 * 1400) continue;
+    if (area < least_area) continue;
     const cv::Rect box(stats.at<int>(label, cv::CC_STAT_LEFT), stats.at<int>(label, cv::CC_STAT_TOP),
                        stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT));
     const cv::Rect wide =

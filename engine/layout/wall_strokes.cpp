@@ -10,17 +10,19 @@
 namespace smokemap {
 namespace {
 
-constexpr double kHollowShare = 0.3;   ///< of the long lines in pairs: from here on single lines are no walls
-constexpr double kWindowReach = 2.5;   ///< times the widest door: how far a post may be from the wall it carries on
-constexpr double kLeastOfFirst = 0.2;  ///< of the area of the first reading: smaller is only a part of that drawing
-constexpr double kUsualLimit = 0.25;   ///< of a heap is worth moving the limit of thickness e-fold from the usual
-constexpr double kThinOfUsual = 0.85;  ///< partitions beside thicker outer walls differ a little
-constexpr double kThinOfAll = 0.5;     ///< where all walls are alike
-constexpr double kAlike = 0.3;         ///< in the logarithm of thickness
-constexpr double kPostReach = 10;      ///< times what strokes that carry on each other may be apart: windows
-constexpr double kLeastPart = 0.02;    ///< of the score of the drawing's best part: less is a word or a bar
-constexpr double kSlender = 15;        ///< times its thickness
-constexpr double kClosed = 1.5;        ///< times an outline's thickness: solid, or two lines that blur made one
+constexpr double kHollowShare = 0.3;     ///< of the long lines in pairs: from here on single lines are no walls
+constexpr double kWindowReach = 2.5;     ///< times the widest door: how far a post may be from the wall it carries on
+constexpr double kLeastOfFirst = 0.2;    ///< of the area of the first reading: smaller is only a part of that drawing
+constexpr double kUsualLimit = 0.25;     ///< of a heap is worth moving the limit of thickness e-fold from the usual
+constexpr double kThinOfUsual = 0.85;    ///< partitions beside thicker outer walls differ a little
+constexpr double kThinOfAll = 0.5;       ///< where all walls are alike
+constexpr double kAlikeThickness = 0.3;  ///< in the logarithm of thickness
+constexpr double kPostReach = 10;        ///< times what strokes that carry on each other may be apart: windows
+constexpr double kLeastPart = 0.02;      ///< of the score of the drawing's best part: less is a word or a bar
+constexpr double kSlender = 15;          ///< times its thickness
+constexpr double kMuchThinner = 0.35;    ///< than the usual wall
+constexpr double kFewThin = 0.15;        ///< of the walls' length
+constexpr double kClosed = 1.5;          ///< times an outline's thickness: solid, or two lines that blur made one
 
 /// The value below which `share` of the weight lies.
 double weighted_quantile(std::vector<std::pair<double, double>> value_weight, double share) {
@@ -222,6 +224,21 @@ void straighten_thickness(std::vector<InkStroke>& strokes) {
   for (auto& s : strokes) s.thickness_px *= std::exp(-0.5 * tilt * std::cos(2 * s.axis.heading()));
 }
 
+/// Moves a few lines much thinner than all other walls, the fronts of cupboards, from the walls to the thin lines.
+/// Where such lines are many they are the partitions.
+void part_off_few_thin(WallStrokes& out) {
+  std::vector<std::pair<double, double>> thickness;
+  double all = 0, thin = 0;
+  for (const auto& s : out.walls) thickness.emplace_back(s.thickness_px, s.length()), all += s.length();
+  const double limit = kMuchThinner * weighted_quantile(thickness, 0.5);
+  for (const auto& s : out.walls) thin += s.thickness_px < limit ? s.length() : 0;
+  if (thin > kFewThin * all) return;
+  const auto first = std::stable_partition(out.walls.begin(), out.walls.end(),
+                                           [&](const InkStroke& s) { return s.thickness_px >= limit; });
+  out.thin.insert(out.thin.end(), first, out.walls.end());
+  out.walls.erase(first, out.walls.end());
+}
+
 struct ThicknessClasses {
   double usual_px = 0;
   double outer_px = 0;       ///< outer walls may be twice as thick as partitions, whichever of them are more
@@ -264,7 +281,7 @@ WallStrokes walls_of_classes(const std::vector<InkStroke>& candidates, const Thi
   for (const auto& s : candidates) {
     if (s.thickness_px < classes.thin_limit_px)
       out.thin.push_back(s);
-    else if (s.thickness_px < std::max(2.2 * classes.usual_px, 1.3 * classes.outer_px) && s.coverage > 0.55)
+    else if (s.thickness_px < std::max(2.2 * classes.usual_px, 1.3 * classes.outer_px) && s.coverage > 0.6)
       thick.push_back(s);
   }
   thick = without_blocks(without_echoes(thick), kWindowReach * params.max_opening_share * side_px);
@@ -279,6 +296,8 @@ WallStrokes walls_of_classes(const std::vector<InkStroke>& candidates, const Thi
     out.thin = candidates;
   } else {
     out.walls = without_ladders(dark_enough(thick), 0.015 * side_px);
+    out.walls = without_discs(out.walls, out.thickness_px, side_px);
+    part_off_few_thin(out);
     if (style.share > 0.12) out.walls = with_pairs_joined(out.walls, pairs);
   }
   std::vector<std::pair<double, double>> long_ones;
@@ -318,7 +337,7 @@ std::vector<InkStroke> within_drawing(const std::vector<InkStroke>& strokes, con
     return std::any_of(inside.begin(), inside.end(), [&](const InkStroke& o) {
       return &o != &s && line_angle_between(o.axis.heading(), s.axis.heading()) < radians(4) &&
              std::abs(signed_line_distance(o.axis, s.axis.midpoint())) < 0.5 * s.thickness_px + 1 &&
-             std::abs(std::log(o.thickness_px / s.thickness_px)) < kAlike &&
+             std::abs(std::log(o.thickness_px / s.thickness_px)) < kAlikeThickness &&
              gap_between(o.axis, s.axis) < kPostReach * bridge_px;
     });
   };

@@ -39,6 +39,9 @@ std::vector<InkStroke> pair_hollow(const std::vector<InkStroke>& thin, double ma
 /// apart, and the outermost lines of such a row.
 std::vector<InkStroke> without_ladders(const std::vector<InkStroke>& strokes, double max_spacing_px);
 
+/// Drops small groups of short strokes that run every way and touch nothing else: hobs, basins, round columns.
+std::vector<InkStroke> without_discs(const std::vector<InkStroke>& strokes, double thickness_px, double side_px);
+
 /// Drops thick lines of dashes and dots (limits and axes, ISO 128): short pieces between long ones in line, with the
 /// same gap on both sides, and what carries them on. Everything is kept unless there are at least five dots.
 std::vector<InkStroke> without_dash_dot_lines(const std::vector<InkStroke>& strokes);

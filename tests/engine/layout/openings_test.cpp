@@ -103,6 +103,64 @@ TEST(Openings, AClosetIsShutAlongItsFront) {
   EXPECT_EQ(static_cast<int>(map.openings.size()), 1);
 }
 
+/// A flat of 1000 x 600: a hall below, `from`..`to` open towards what lies above, where both sides of the opening end
+/// in corners, so that no end is loose.
+std::vector<InkStroke> flat_with_hall(double from, double to, double hall_width) {
+  const double left = 0.5 * (from + to) - 0.5 * hall_width, right = left + hall_width;
+  return {line_of(0, 0, 1000, 0, kWallPx),          line_of(1000, 0, 1000, 300, kWallPx),
+          line_of(0, 0, 0, 300, kWallPx),           line_of(0, 300, from, 300, kWallPx),
+          line_of(to, 300, 1000, 300, kWallPx),     line_of(from, 300, from, 260, kWallPx),
+          line_of(to, 300, to, 260, kWallPx),       line_of(left, 300, left, 600, kWallPx),
+          line_of(right, 300, right, 600, kWallPx), line_of(left, 600, right, 600, kWallPx)};
+}
+
+// Regression: an opening between two corners stayed open, and its two rooms were one.
+TEST(Openings, AMouthBetweenTwoCornersIsADoubtfulPassage) {
+  for (const double width : {50.0, 60.0, 70.0}) {
+    const auto map = closed(flat_with_hall(500 - 0.5 * width, 500 + 0.5 * width, 400), {});
+    ASSERT_EQ(map.openings.size(), 1U) << width;
+    EXPECT_EQ(map.openings[0].kind, OpeningKind::kPassage);
+    EXPECT_LE(map.openings[0].confidence, 0.4);
+    EXPECT_NEAR(map.openings[0].gap_px.length(), width, 3);
+    EXPECT_EQ(find_rooms(map).size(), 2U);
+  }
+}
+
+TEST(Openings, ACorridorIsNotShutWhereItMeetsAnother) {
+  for (const double width : {50.0, 60.0, 70.0}) {
+    auto walls = flat_with_hall(500 - 0.5 * width, 500 + 0.5 * width, width);
+    walls.erase(walls.begin() + 5, walls.begin() + 7);  // without the corners: as wide as what leads to it
+    const auto map = closed(walls, {});
+    EXPECT_TRUE(map.openings.empty()) << width;
+    EXPECT_EQ(find_rooms(map).size(), 1U);
+  }
+}
+
+// Regression: an entrance whose both sides end in corners left the flat open.
+TEST(Openings, ALeafBetweenTwoCornersIsADoor) {
+  std::vector<InkStroke> walls{line_of(0, 0, 1000, 0, kWallPx),       line_of(1000, 0, 1000, 600, kWallPx),
+                               line_of(0, 0, 0, 600, kWallPx),        line_of(0, 600, 500, 600, kWallPx),
+                               line_of(570, 600, 1000, 600, kWallPx), line_of(500, 600, 500, 300, kWallPx),
+                               line_of(570, 600, 570, 300, kWallPx),  line_of(0, 300, 500, 300, kWallPx),
+                               line_of(570, 300, 1000, 300, kWallPx)};
+  const auto map = closed(walls, {line_of(502, 605, 502, 668)});
+  const auto door = std::find_if(map.openings.begin(), map.openings.end(),
+                                 [](const LayoutOpening& o) { return o.kind == OpeningKind::kDoor; });
+  ASSERT_NE(door, map.openings.end());
+  EXPECT_NEAR(door->gap_px.midpoint().y(), 600, 2);
+  EXPECT_LT(door->confidence, 0.7);
+}
+
+// Regression: a gap ended beside the wall that it was to reach, and the room leaked there.
+TEST(Gaps, EndOnTheWallThatTheyReach) {
+  const auto map = build_wall_graph({line_of(0, 100, 100, 100, kWallPx), line_of(150, 103, 150, 300, kWallPx)}, kWallPx,
+                                    LayoutParams{});
+  const auto gaps = gaps_ahead(map, loose_ends(map), kWallPx, 80);
+  const auto to_wall = std::find_if(gaps.begin(), gaps.end(), [](const Gap& g) { return g.wall_b >= 0; });
+  ASSERT_NE(to_wall, gaps.end());
+  EXPECT_LT(distance(map.wall_px(to_wall->wall_b), to_wall->segment.b), 1e-6);
+}
+
 TEST(Openings, TreadsOfAStairAreNoFronts) {
   auto walls = room_open_above(500, 500);
   walls.push_back(line_of(100, 0, 100, 150, kWallPx));

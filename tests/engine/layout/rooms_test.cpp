@@ -54,6 +54,26 @@ TEST(Rooms, WithoutAWallBetweenThemAreOne) {
   EXPECT_NEAR(area_of(rooms[0]), 2 * 200 * 200, 0.05 * 2 * 200 * 200);
 }
 
+// Regression: pillars and shafts were rooms.
+TEST(Rooms, WhatIsMuchSmallerThanADoorIsNone) {
+  for (const double door : {60.0, 100.0}) {
+    LayoutMap map = grid_of_rooms(3, 3, 300);
+    const int first = static_cast<int>(map.corners.size());
+    for (const Point2& p : {Point2(40, 40), Point2(90, 40), Point2(90, 90), Point2(40, 90)}) {
+      LayoutCorner c;
+      c.p_px = p;
+      map.corners.push_back(c);
+    }
+    for (int i = 0; i < 4; ++i) map.walls.push_back({first + i, first + (i + 1) % 4, 6, 1, false});
+    for (int i = 0; i < 3; ++i)
+      map.openings.push_back({{{100 + 300.0 * i, 300}, {100 + 300.0 * i + door, 300}}, OpeningKind::kDoor, 1});
+    const std::size_t pillar = 50 * 50 > 0.5 * door * door ? 1 : 0;
+    EXPECT_EQ(find_rooms(with_degrees(map)).size(), 9U + pillar) << door;
+    map.openings.resize(2);
+    EXPECT_EQ(find_rooms(with_degrees(map)).size(), 10U) << "two doors do not tell how wide doors are";
+  }
+}
+
 TEST(Rooms, OpeningsCloseThem) {
   LayoutMap map = grid_of_rooms(2, 1, 200, {3});
   map.openings.push_back({{{200, 0}, {200, 200}}, OpeningKind::kDoor, 1});

@@ -122,6 +122,68 @@ TEST(SelectWalls, MeasuresThicknessWithinTheDrawingNotOnItsFrame) {
   EXPECT_GE(chosen.walls.size(), 30U);
 }
 
+/// A house of 3 x 2 rooms of 400.
+std::vector<InkStroke> house(double thickness) {
+  std::vector<InkStroke> walls;
+  for (int i = 0; i <= 3; ++i) walls.push_back(stroke(100 + 400 * i, 100, 100 + 400 * i, 900, thickness));
+  for (int i = 0; i <= 2; ++i) walls.push_back(stroke(100, 100 + 400 * i, 1300, 100 + 400 * i, thickness));
+  return walls;
+}
+
+bool has_wall(const WallStrokes& chosen, const Segment2& line) {
+  return std::any_of(chosen.walls.begin(), chosen.walls.end(), [&](const InkStroke& s) {
+    return distance(s.axis, line.midpoint()) < 3 && line_angle_between(s.axis.heading(), line.heading()) < radians(5);
+  });
+}
+
+// Regression: the fronts of cupboards, a third as thick as all walls, parted off rooms.
+TEST(SelectWalls, AFewLinesMuchThinnerThanAllOthersAreFronts) {
+  auto strokes = house(14);
+  strokes.push_back(stroke(107, 160, 493, 160, 4.3));
+  const auto chosen = select_walls(strokes, {1400, 1000}, LayoutParams{});
+  EXPECT_FALSE(has_wall(chosen, strokes.back().axis));
+  EXPECT_TRUE(has_wall(chosen, strokes.front().axis));
+  const auto front = std::find_if(chosen.thin.begin(), chosen.thin.end(),
+                                  [&](const InkStroke& s) { return distance(s.axis, Point2(300, 160)) < 1; });
+  EXPECT_NE(front, chosen.thin.end()) << "it may still be a window or the leaf of a door";
+}
+
+// Regression: the hobs of a stove were walls, from which openings led to the real ones.
+TEST(SelectWalls, DiscsAreNoWallsAndAnglesAre) {
+  auto strokes = house(14);
+  for (const double x : {230.0, 280.0}) {
+    strokes.push_back(stroke(x - 18, 300, x + 18, 304, 15));
+    strokes.push_back(stroke(x - 14, 318, x + 14, 286, 15));
+  }
+  const Segment2 one{Point2(560, 300), Point2(630, 300)}, two{Point2(630, 300), Point2(630, 360)};
+  strokes.push_back(stroke(560, 300, 630, 300, 14));
+  strokes.push_back(stroke(630, 300, 630, 360, 14));
+  const auto chosen = select_walls(strokes, {1400, 1000}, LayoutParams{});
+  EXPECT_FALSE(has_wall(chosen, {Point2(212, 300), Point2(248, 304)}));
+  EXPECT_TRUE(has_wall(chosen, one) && has_wall(chosen, two)) << "a stub around a corner of a hall";
+}
+
+// Regression: a wall's stroke ran on along the rough parapet of the window beside it, covered little and was dropped.
+TEST(TraceStrokes, AWallEndsWhereAThinnerPieceCarriesItOn) {
+  auto random = random_stream(6, 0);
+  for (int trial = 0; trial < 6; ++trial) {
+    const int wall = 24 + static_cast<int>(uniform_index(random, 8)), end = 230 + 10 * trial;
+    cv::Mat dark = cv::Mat::zeros(700, 1600, CV_8UC1);
+    cv::rectangle(dark, {300, 100, wall, end - 100}, cv::Scalar(230), cv::FILLED);
+    const int low = 300 + wall / 4, thin = wall / 2 - 5;
+    cv::rectangle(dark, {low, end, thin, 300}, cv::Scalar(230), cv::FILLED);
+    for (int y = end + 8; y < end + 300; y += 9)  // in places half as thick as the wall
+      cv::circle(dark, {low + thin, y}, static_cast<int>(2 + uniform_index(random, 3)), {230}, cv::FILLED);
+    const auto strokes = trace_strokes(dark, LayoutParams{});
+    const auto own = std::find_if(strokes.begin(), strokes.end(), [&](const InkStroke& s) {
+      return s.thickness_px > 0.8 * wall && std::abs(std::sin(s.axis.heading())) > 0.95;
+    });
+    ASSERT_NE(own, strokes.end()) << "wall of " << wall << " px, " << end - 100 << " long";
+    EXPECT_GT(own->coverage, 0.6);
+    EXPECT_NEAR(std::max(own->axis.a.y(), own->axis.b.y()), end, 12);
+  }
+}
+
 TEST(SelectWalls, HasNothingToSayAboutNothing) {
   EXPECT_TRUE(select_walls({}, {1000, 800}, LayoutParams{}).walls.empty());
 }
