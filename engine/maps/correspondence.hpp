@@ -20,7 +20,8 @@ struct RegionPair {
   int label_a = 0;        ///< on the sketch (or layout)
   int label_b = 0;        ///< on the other map
   double confidence = 0;  ///< 0..1, calibrated: of pairs said to be 0.9 sure, nine in ten are right, among maps that
-                          ///< may be of other buildings; in a doubtful matching at most 0.75, but for what people said
+                          ///< may be of other buildings; what people did not say has at most 0.75 in doubtful matchings
+                          ///< and where same_building is below 0.93
   Verdict verdict = Verdict::kProposed;
 };
 

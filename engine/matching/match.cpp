@@ -28,11 +28,12 @@ constexpr double kPinReach_px = 10;
 constexpr double kClearMargin = 0.25;  ///< from here on the runner-up does not matter
 constexpr double kDoubtfulMargin = 0.08;
 constexpr double kDoubtfulConfidence = 0.5;
-constexpr double kUnknownFit = 0.5;    ///< the published methods do not ask
-constexpr double kMostInDoubt = 0.75;  ///< nothing is shown as sure while the whole is doubtful
-constexpr double kLeastSaid = 0.1;     ///< what is wrong nine times in ten is no pair
-constexpr double kLeastJoined = 0.5;   ///< a region that only joins a pair is said if it is likelier right than wrong
-constexpr double kPinned = 0.97;       ///< a tap may miss the room that was meant
+constexpr double kUnknownFit = 0.5;     ///< the published methods do not ask
+constexpr double kMostInDoubt = 0.75;   ///< nothing is shown as sure while the whole is doubtful
+constexpr double kSureBuilding = 0.93;  ///< or below this: one map of another building in a hundred gets this far
+constexpr double kLeastSaid = 0.1;      ///< what is wrong nine times in ten is no pair
+constexpr double kLeastJoined = 0.5;    ///< a region that only joins a pair is said if it is likelier right than wrong
+constexpr double kPinned = 0.97;        ///< a tap may miss the room that was meant
 
 std::optional<int> region_near(const Segmentation& map, const Point2& p_px) {
   const int reach = static_cast<int>(kPinReach_px);
@@ -174,7 +175,8 @@ void finish(const Segmentation& a, const PairRules& rules, const std::vector<Reg
     for (RegionPair& pair : *pairs) {
       if (is_bound(pair)) continue;
       pair.confidence *= matching.same_building;
-      if (matching.doubtful) pair.confidence = std::min(pair.confidence, kMostInDoubt);
+      if (matching.doubtful || matching.same_building < kSureBuilding)
+        pair.confidence = std::min(pair.confidence, kMostInDoubt);
     }
   keep_verdicts(verdicts, matching);
   std::vector<WeighedAnswer> answers;

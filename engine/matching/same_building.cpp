@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kHalfTrusted = 8;  ///< regions at which evidence counts half
 constexpr double kPerRatio = 1.27;  ///< logit lost when one map has e times as many regions as the other
-constexpr double kPerTap = 0.8;     ///< logit
+constexpr double kPerTap = 0.4;     ///< logit: who is shown a wrong map may well confirm what it shows
 constexpr int kMostTaps = 4;        ///< that count: a person may be wrong about the whole building
 constexpr double kLeast = 0.02, kMost = 0.99;
 
