@@ -1,6 +1,7 @@
 #include "navigation/cost_map.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "core/check.hpp"
@@ -11,6 +12,9 @@ namespace {
 constexpr int kOccupiedPercent = 60;
 constexpr int kFreePercent = 40;
 constexpr double kHalfGapM = 2.5;
+constexpr int kSurePercent = 90;   // three echoes without a beam that went through
+constexpr double kEchoesM = 0.15;  // echoes of one thing ...
+constexpr int kEchoes = 3;         // ... are at least so many
 
 /// Draws in cells: row = cell y.
 class Canvas {
@@ -97,6 +101,20 @@ cv::Mat inside_of_plan(const MergedMap& merged, const LayoutMap& layout, const G
   return cv::countNonZero(inside) * 2 >= cv::countNonZero(hull) ? inside : hull;
 }
 
+/// Smoke sends an echo here and there, and one in a doorway would close it: what was met once or twice, and nothing
+/// beside it, closes no way. What really stands there is met again, and stops the robot before that.
+bool is_lone_echo(const OccupancyGrid& sensed, const Cell& cell) {
+  if (sensed.at(cell) >= kSurePercent) return false;
+  const int reach = static_cast<int>(std::lround(kEchoesM / sensed.frame().resolution_m));
+  int together = 0;
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx) {
+      const Cell near{cell.x + dx, cell.y + dy};
+      together += sensed.get(near) >= kOccupiedPercent;
+    }
+  return together < kEchoes;
+}
+
 void paint_sensed(const OccupancyGrid& sensed, const GridFrame& frame, std::vector<Ground>& ground) {
   const GridFrame& from = sensed.frame();
   Cell cell;
@@ -107,10 +125,11 @@ void paint_sensed(const OccupancyGrid& sensed, const GridFrame& frame, std::vect
       const Cell target = frame.cell_of(from.center_of(cell));
       if (!frame.contains(target)) continue;
       Ground& g = ground[frame.index(target)];
-      if (percent >= kOccupiedPercent)
-        g = Ground::kBlocked;
-      else if (percent <= kFreePercent && g != Ground::kBlocked)
+      if (percent >= kOccupiedPercent) {
+        if (!is_lone_echo(sensed, cell)) g = Ground::kBlocked;
+      } else if (percent <= kFreePercent && g != Ground::kBlocked) {
         g = Ground::kFree;
+      }
     }
 }
 

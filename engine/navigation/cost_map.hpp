@@ -15,7 +15,7 @@ enum class Ground : std::uint8_t {
   kUnknown,  ///< neither seen nor drawn
   kFree,     ///< a sensor saw it free
   kPlanned,  ///< not seen yet, but inside the plan and no wall is drawn there
-  kBlocked,  ///< seen occupied, or a wall of the merged map that nobody saw through
+  kBlocked,  ///< seen occupied (more than a lone echo), or a wall of the merged map that nobody saw through
 };
 
 struct CostMapParams {
@@ -55,6 +55,7 @@ class CostMap {
 
 /// Merges what sensors saw with what the corrected plan says of places nobody saw.
 /// @param layout may be null: then there is no planned ground
+/// An echo or two alone, as smoke sends them, block nothing.
 /// A cell that sensors saw free is free even where an unseen wall is drawn; a wall called missing blocks nothing.
 /// kDegenerate if there is neither plan nor anything seen.
 /// Cost: O(cells).

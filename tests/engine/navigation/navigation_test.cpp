@@ -149,6 +149,31 @@ TEST(CostMap, ASeenFreeCellBeatsAWallNobodySaw) {
   EXPECT_NE(map->ground(map->frame().cell_of({3.0, 2.01})), Ground::kBlocked) << "a missing wall blocks nothing";
 }
 
+/// Smoke sent an echo into a doorway of .9 m: no way was known any more, and the robot stood before it until it gave
+/// up.
+TEST(CostMap, ALoneEchoClosesNoDoorButSeveralOrASureOneDo) {
+  GridFrame frame;
+  frame.resolution_m = 0.05;
+  frame.width_cells = 80, frame.height_cells = 60;
+  OccupancyGrid sensed(frame, 2);
+  const auto set = [&](int x, int y, int percent) { sensed.at({x, y}) = static_cast<std::int8_t>(percent); };
+  for (int y = 0; y < 60; ++y)
+    if (y < 21 || y >= 39) set(40, y, 98);
+  const auto goes_through = [&] {
+    const auto map = build_cost_map(MergedMap{}, sensed, nullptr, CostMapParams{});
+    return map.ok() && plan_path(*map, {0.8, 1.5}, {3.2, 1.5}, {}).ok();
+  };
+  EXPECT_TRUE(goes_through());
+  set(40, 30, 85);
+  EXPECT_TRUE(goes_through());
+  set(44, 34, 70);  // another, 28 cm beside it
+  EXPECT_TRUE(goes_through());
+  set(40, 30, 95);
+  EXPECT_FALSE(goes_through());
+  set(40, 30, 70), set(41, 30, 70), set(40, 31, 70);
+  EXPECT_FALSE(goes_through());
+}
+
 TEST(CostMap, AnExitThatTheReaderMissedDoesNotFloodTheCorridor) {
   // A room of 10 m x 6 m with a gap of 1.4 m in its outer wall that is no listed opening.
   LayoutMap layout;
