@@ -24,6 +24,9 @@ namespace {
 
 constexpr double kAsGoodAsThePlan = 0.25;  ///< a drawing with so much of the best one's score deserves a question
 
+constexpr double kAtTheLimit = 0.95;  ///< of the thickness that walls may have
+constexpr double kWider = 1.5;        ///< is looked for then
+
 constexpr double kWithoutRooms = 0.49;  ///< what is said of walls then: all are doubtful
 constexpr double kTrusted = 0.935;      ///< of well read plans the mean confidence is higher
 
@@ -146,14 +149,22 @@ Choice without_blocks(const std::vector<InkStroke>& strokes, const cv::Mat& dark
   return {select_walls(free, darkness.size(), params, least_px, at), covered};
 }
 
-/// Walls in the ink. Where a plan draws them as two lines, the space between is filled and everything is traced once
-/// more: then thickness tells walls from leaves and treads, as in plans with solid walls, and blur does no harm.
+/// Walls in the ink. Where the thickest are as thick as walls are looked for, thicker ones are looked for. Where a plan
+/// draws them as two lines, the space between is filled and everything is traced once more: then thickness tells walls
+/// from leaves and treads, as in plans with solid walls, and blur does no harm.
 /// @param at  the drawing at this place, if a person chose one
 Choice choose_walls(const cv::Mat& darkness, const cv::Mat& covered, const LayoutParams& params,
                     const std::optional<Point2>& at, const Progress& progress) {
-  const auto strokes = trace_strokes(darkness, params);
+  auto strokes = trace_strokes(darkness, params);
   progress.tell(0.7, "rooms");
   Choice choice{select_walls(strokes, darkness.size(), params, 0, at), covered};
+  const double thickest_px = params.max_wall_share * std::max(darkness.rows, darkness.cols);
+  if (choice.walls.thickest_px > kAtTheLimit * thickest_px) {
+    LayoutParams wider = params;
+    wider.max_wall_share *= kWider;
+    strokes = trace_strokes(darkness, wider);
+    choice.walls = select_walls(strokes, darkness.size(), params, 0, at);
+  }
   if (choice.walls.walls.empty() || progress.cancelled()) return choice;
   if (!choice.walls.hollow) return without_blocks(strokes, darkness, std::move(choice), 0, params, at);
   const int reach = static_cast<int>(std::lround(1.1 * choice.walls.hollow_px)) | 1;

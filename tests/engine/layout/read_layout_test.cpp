@@ -62,6 +62,19 @@ TEST(ReadLayout, KeepsTheGrayFrontOfBlackRooms) {
   EXPECT_EQ(reading->layout.rooms_px.size(), 24U);
 }
 
+// Regression: of a flat with outer walls as thick as a 35th of the picture only the thinner half was read.
+TEST(ReadLayout, FindsOuterWallsThickerThanUsual) {
+  cv::Mat picture(1100, 1600, CV_8UC3, cv::Scalar(255, 255, 255));
+  const std::vector<cv::Rect> solid = {{200, 200, 1200, 34}, {200, 200, 34, 600}, {1366, 200, 34, 600},
+                                       {200, 756, 1200, 44}, {700, 200, 20, 600}, {1000, 200, 20, 600}};
+  for (const auto& box : solid) cv::rectangle(picture, box, cv::Scalar(10, 10, 10), cv::FILLED);
+  const auto reading = read_layout(picture);
+  ASSERT_TRUE(reading) << reading.error().message;
+  const Segment2 thickest{Point2(230, 778), Point2(1370, 778)};
+  EXPECT_GT(testing::covered_by({thickest}, testing::wall_segments(reading->layout), 6), 0.95);
+  EXPECT_EQ(reading->layout.rooms_px.size(), 3U);
+}
+
 TEST(ReadLayout, IsSureOfNoWallWhereNoRoomCloses) {
   cv::Mat picture(900, 1200, CV_8UC3, cv::Scalar::all(245));
   for (const int y : {150, 400, 700})
