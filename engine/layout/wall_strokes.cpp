@@ -281,7 +281,7 @@ WallStrokes walls_of_classes(const std::vector<InkStroke>& candidates, const Thi
   for (const auto& s : candidates) {
     if (s.thickness_px < classes.thin_limit_px)
       out.thin.push_back(s);
-    else if (s.thickness_px < std::max(2.2 * classes.usual_px, 1.3 * classes.outer_px) && s.coverage > 0.6)
+    else if (s.thickness_px < std::max(2.2 * classes.usual_px, 1.3 * classes.outer_px) && s.coverage > 0.55)
       thick.push_back(s);
   }
   thick = without_blocks(without_echoes(thick), kWindowReach * params.max_opening_share * side_px);
