@@ -5,6 +5,9 @@
 #include <functional>
 #include <vector>
 
+#include "geometry/angle.hpp"
+#include "geometry/segment2.hpp"
+
 namespace smokemap {
 namespace {
 
@@ -14,6 +17,14 @@ constexpr double kWallBias = -3.2, kByInk = 2.2, kByThickness = -1.7, kByLength 
 constexpr double kCornerBias = -4.4, kByWeakest = 2.65, kBySecond = 4.0;
 constexpr double kSurestCorner = 0.89;
 constexpr double kSameEndPx = 2.5;  ///< an opening begins where a wall ends
+
+// Of a row of treads or hatching.
+constexpr int kLeastRow = 4;            ///< others like it
+constexpr double kLikeLength = 1.6;     ///< times longer or shorter
+constexpr double kTreadSpacing = 0.35;  ///< of their length; partitions of offices are farther apart
+constexpr double kHatchSpacing = 0.6;   ///< where they run askew to most walls, or are short
+constexpr double kShortShare = 0.05;    ///< of the plan's extent
+constexpr double kInARow = 0.45;        ///< of the confidence is left
 
 double chance(double logit) { return 1 / (1 + std::exp(-logit)); }
 
@@ -53,6 +64,53 @@ void grade_corners(LayoutMap& map) {
   }
 }
 
+/// Heading modulo a right angle of most walls, by length.
+double main_heading(const LayoutMap& map) {
+  Point2 sum = Point2::Zero();
+  for (std::size_t w = 0; w < map.walls.size(); ++w) {
+    const Segment2 s = map.wall_px(static_cast<int>(w));
+    sum += s.length() * Point2(std::cos(4 * s.heading()), std::sin(4 * s.heading()));
+  }
+  return 0.25 * std::atan2(sum.y(), sum.x());
+}
+
+/// Walls like one another side by side, closer than walls stand: treads of a stair, lines of hatching, shelves.
+class Rows {
+ public:
+  Rows(const LayoutMap& map, double extent_px) : heading_(main_heading(map)), short_px_(kShortShare * extent_px) {
+    for (std::size_t w = 0; w < map.walls.size(); ++w) walls_.push_back(map.wall_px(static_cast<int>(w)));
+    std::vector<bool> within(walls_.size());
+    for (std::size_t w = 0; w < walls_.size(); ++w) within[w] = others_like(w, {}) >= kLeastRow;
+    members_ = within;
+    for (std::size_t w = 0; w < walls_.size(); ++w)  // the ends of a row have others on one side only
+      if (!within[w]) members_[w] = others_like(w, within) >= kLeastRow / 2;
+  }
+  bool holds(std::size_t wall) const { return members_[wall]; }
+
+ private:
+  /// @param among  counts only; empty = all
+  std::ptrdiff_t others_like(std::size_t of, const std::vector<bool>& among) const {
+    const Segment2& wall = walls_[of];
+    const double length = wall.length(), turn = line_angle_between(wall.heading(), heading_);
+    const bool askew = std::min(turn, kPi / 2 - turn) > radians(15);
+    const double spacing = askew || length < short_px_ ? kHatchSpacing : kTreadSpacing;
+    std::ptrdiff_t count = 0;
+    for (std::size_t o = 0; o < walls_.size(); ++o) {
+      if (!among.empty() && !among[o]) continue;
+      const double off = std::abs(signed_line_distance(wall, walls_[o].midpoint()));
+      const double t = along(wall, walls_[o].midpoint()), ratio = walls_[o].length() / std::max(length, 1e-9);
+      count += off > 0.05 * length && off < 0.5 * kLeastRow * spacing * length &&
+               std::abs(t - 0.5) < (askew ? 1.5 : 0.5) && ratio < kLikeLength && ratio * kLikeLength > 1 &&
+               line_angle_between(walls_[o].heading(), wall.heading()) < radians(8);
+    }
+    return count;
+  }
+
+  double heading_, short_px_;
+  std::vector<Segment2> walls_;
+  std::vector<bool> members_;
+};
+
 }  // namespace
 
 void grade_confidence(LayoutMap& map) {
@@ -69,6 +127,9 @@ void grade_confidence(LayoutMap& map) {
     wall.confidence = chance(kWallBias + kByInk * wall.confidence + kByThickness * odd + kByLength * length +
                              kByAttachment * attached);
   }
+  const Rows rows(map, extent);
+  for (std::size_t w = 0; w < map.walls.size(); ++w)
+    if (!map.walls[w].by_person && rows.holds(w)) map.walls[w].confidence *= kInARow;
   grade_corners(map);
 }
 

@@ -68,6 +68,50 @@ TEST(Confidence, DoesNotDependOnTheScaleOfThePicture) {
     EXPECT_NEAR(small.walls[w].confidence, large.walls[w].confidence, 1e-9);
 }
 
+/// A box of 900 x 300 with lines across it, `spacing_px` apart; `lean_px` is how far their upper ends lie to the right.
+LayoutMap box_with_lines(int lines, double spacing_px, double height_px, double lean_px) {
+  LayoutMap map;
+  const auto corner = [&](double x, double y) {
+    LayoutCorner c;
+    c.p_px = {x, y};
+    map.corners.push_back(c);
+    return static_cast<int>(map.corners.size()) - 1;
+  };
+  const auto wall = [&](int a, int b) { map.walls.push_back({a, b, 8, 0.9, false}); };
+  const int box[] = {corner(0, 0), corner(900, 0), corner(900, height_px), corner(0, height_px)};
+  for (int i = 0; i < 4; ++i) wall(box[i], box[(i + 1) % 4]);
+  for (int i = 1; i <= lines; ++i) {
+    const int a = corner(i * spacing_px, 0), b = corner(i * spacing_px + lean_px, height_px);
+    wall(a, b);
+    map.walls.push_back({box[0], a, 8, 0.9, false});  // both ends meet something
+    map.walls.push_back({box[3], b, 8, 0.9, false});
+  }
+  return with_degrees(map);
+}
+
+double surest_line(const LayoutMap& graded, int from, int to) {
+  double surest = 0;
+  for (int i = from; i < to; ++i)
+    surest = std::max(surest, graded.walls[static_cast<std::size_t>(4 + 3 * i)].confidence);
+  return surest;
+}
+
+// Regression: the hatching of cut walls and the treads of a stair were sure walls. The last of a row looks like the
+// wall that the row ends at.
+TEST(Confidence, IsLowForTreadsAndHatching) {
+  LayoutMap stair = box_with_lines(8, 60, 240, 0), hatched = box_with_lines(20, 40, 60, 60);
+  grade_confidence(stair), grade_confidence(hatched);
+  EXPECT_LT(surest_line(stair, 1, 7), 0.5);
+  EXPECT_LT(surest_line(hatched, 0, 20), 0.5);
+  for (int side = 0; side < 4; ++side) EXPECT_GT(stair.walls[static_cast<std::size_t>(side)].confidence, 0.9);
+}
+
+TEST(Confidence, OfTheWallsBetweenOfficesStaysHigh) {
+  LayoutMap offices = box_with_lines(6, 120, 260, 0);
+  grade_confidence(offices);
+  for (int i = 0; i < 6; ++i) EXPECT_GT(offices.walls[static_cast<std::size_t>(4 + 3 * i)].confidence, 0.9) << i;
+}
+
 TEST(Confidence, OfNothingIsNothing) {
   LayoutMap map;
   grade_confidence(map);
