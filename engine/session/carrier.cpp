@@ -49,7 +49,7 @@ Transferred Carrier::from_layout(const Point2& p_px, int frame_revision) const {
   t.p = merged_.layout_to_map(p_layout);
   t.sigma = std::hypot(merged_.layout_to_map.sigma_m(p_layout), kTapSigmaM);
   t.confidence = plan_confidence(merged_.fit);
-  if (merged_.fit.verdict == "does not fit") t.reason = "this plan does not seem to fit this building";
+  if (!plan_fits()) t.reason = "this plan does not seem to fit this building";
   return t;
 }
 

@@ -23,6 +23,7 @@ Result<Ok> FleetParams::validate() const {
       .positive("look_again_s", look_again_s)
       .in_range("look_patience_s", look_patience_s, look_again_s, 36000)
       .in_range("look_limit_s", look_limit_s, look_again_s, 36000)
+      .in_range("doubt_patience_s", doubt_patience_s, 0, 36000)
       .in_range("smoky_share", smoky_share, 0, 1)
       .in_range("clear_share", clear_share, 0, smoky_share)
       .in_range("explore_pause_s", explore_pause_s, 0, 60)
@@ -203,7 +204,8 @@ void Fleet::go_back(Robot& robot, Stamp now) {
 
 void Fleet::take_goal(Robot& robot, Goal& goal, const Point2& p_map) {
   if (robot.status.goal_id != goal.id)
-    goal.state = GoalState::kSent, robot.avoided.clear(), robot.looking_s = robot.looked_s = 0, robot.looked_at.reset();
+    goal.state = GoalState::kSent, robot.avoided.clear(), robot.looking_s = robot.looked_s = robot.doubted_s = 0,
+    robot.looked_at.reset();
   robot.status.goal_id = goal.id;
   robot.detour = false;
   robot.p_map_retreat.reset();
@@ -234,10 +236,9 @@ bool Fleet::look_for_way(Robot& robot, Stamp now, const Goal& goal, const Point2
 }
 
 void Fleet::settle_goal(Robot& robot, Stamp now, Goal* goal, const Carrier& carrier) {
-  const Stamp before = std::exchange(robot.steered_at, now);
+  const double passed_s = std::min(1.0, to_seconds(now - std::exchange(robot.steered_at, now)));
   if (!goal) return;
   if (robot.detour) {
-    const double passed_s = std::min(1.0, to_seconds(now - before));
     robot.looking_s += passed_s, robot.looked_s += passed_s;
     if (robot.looking_s > params_.look_patience_s)
       return give_up(robot, *goal, "no way there was found, and nothing new was seen for a minute");
@@ -253,7 +254,7 @@ void Fleet::settle_goal(Robot& robot, Stamp now, Goal* goal, const Carrier& carr
     return;
   switch (robot.last.state) {
     case PilotState::kArrived:
-      goal->state = GoalState::kArrived, goal->reason.clear();
+      arrive(robot, *goal, carrier, passed_s);
       break;
     case PilotState::kGivenUp:
       give_up(robot, *goal, robot.last.reason);
@@ -265,6 +266,15 @@ void Fleet::settle_goal(Robot& robot, Stamp now, Goal* goal, const Carrier& carr
       goal->reason = robot.last.reason;
       break;
   }
+}
+
+void Fleet::arrive(Robot& robot, Goal& goal, const Carrier& carrier, double passed_s) {
+  goal.reason = carrier.to_map(goal.place).reason;
+  goal.state = GoalState::kArrived;
+  if (goal.reason.empty() || carrier.plan_fits()) return;
+  robot.doubted_s += passed_s;
+  if (robot.doubted_s > params_.doubt_patience_s) return give_up(robot, goal, goal.reason);
+  goal.state = GoalState::kDriving;
 }
 
 void Fleet::give_up(Robot& robot, Goal& goal, const std::string& reason) {

@@ -42,6 +42,7 @@ struct FleetParams {
   double look_again_s = 2.0;     ///< between two searches for a way that was not known
   double look_patience_s = 60;   ///< looking for a way without coming anywhere new
   double look_limit_s = 180;     ///< looking for a way to one goal in all
+  double doubt_patience_s = 20;  ///< at a place of a plan that does not fit: it may yet be laid right
   double smoky_share = 0.5;      ///< a robot that gives up in such smoke goes back ...
   double clear_share = 0.25;     ///< ... to where it last had this view
   double explore_pause_s = 1.0;  ///< after a place was reached, before the next is chosen
@@ -115,6 +116,7 @@ class Fleet {
     std::optional<Stamp> looked_at;  ///< when a way to the goal was last asked for
     double looking_s = 0;            ///< for a way, without coming anywhere new
     double looked_s = 0;             ///< for a way to this goal in all
+    double doubted_s = 0;            ///< stood where a plan that does not fit has the goal
     Stamp steered_at = 0;
     Stamp idle_since = 0;
     bool ever_localized = false;
@@ -136,6 +138,9 @@ class Fleet {
   /// nearest to the goal, until a way is known or nothing is left to look at. False: nothing is left.
   bool look_for_way(Robot& robot, Stamp now, const Goal& goal, const Point2& p_map);
   void settle_goal(Robot& robot, Stamp now, Goal* goal, const Carrier& carrier);
+  /// The robot is where the goal seems to be. Nothing is claimed of a plan that does not fit; any other doubt stays
+  /// said.
+  void arrive(Robot& robot, Goal& goal, const Carrier& carrier, double passed_s);
   /// The goal cannot be reached; in smoke the robot goes back to where it can see.
   void give_up(Robot& robot, Goal& goal, const std::string& reason);
   void go_back(Robot& robot, Stamp now);

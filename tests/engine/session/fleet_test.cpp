@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "tests/engine/session/scene.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/result_matchers.hpp"
@@ -248,6 +250,37 @@ TEST(Fleet, ARobotThatCannotGetOnInSmokeSaysSoAndGoesBackToWhereItCanSee) {
   EXPECT_EQ(goal.state, GoalState::kFailed);
   EXPECT_NE(goal.reason.find("cannot get on in the smoke"), std::string::npos) << goal.reason;
   EXPECT_LT(pose.x(), 1.3) << "back in clear air";
+}
+
+// Regression: a robot stood where a plan that was laid wrong by 7 m had the goal, and "arrived".
+TEST(Fleet, NothingIsReachedOnAPlanThatDoesNotFit) {
+  const Point2 p_px(100, 100);
+  const MergedMap plan = plan_alone(test::square_plan(), PlanStart{});
+  const Point2 p_map = plan.layout_to_map(test::square_plan().frame().to_metres(p_px));
+  const auto send = [&](const std::string& verdict) {
+    auto pair = std::make_unique<Pair>(std::map<std::string, Pose2>{{"a", Pose2(p_map.x(), p_map.y(), 0)}});
+    EXPECT_THAT(pair->board.apply(SetLayout{"plan", test::square_plan()}), test::IsOk());
+    pair->merged = plan;
+    pair->merged.fit = {0.1, verdict};
+    SetGoal set;
+    set.goal.id = "g", set.goal.robot = "a";
+    set.goal.place = {PlaceFrame::kLayoutPx, p_px, pair->board.revisions.layout_frame};
+    EXPECT_THAT(pair->board.apply(set), test::IsOk());
+    pair->step(50);
+    return pair;
+  };
+  EXPECT_EQ(send("fits")->board.find_goal("g")->state, GoalState::kArrived);
+  const auto doubted = send("does not fit");
+  const Goal& goal = *doubted->board.find_goal("g");
+  EXPECT_EQ(goal.state, GoalState::kDriving);
+  EXPECT_EQ(goal.reason, "this plan does not seem to fit this building");
+  doubted->step(200);
+  EXPECT_EQ(goal.state, GoalState::kFailed) << "its patience ends";
+  EXPECT_EQ(goal.reason, "this plan does not seem to fit this building");
+  const auto laid_right = send("does not fit");
+  laid_right->merged.fit = {0.9, "fits"};
+  laid_right->step(2);
+  EXPECT_EQ(laid_right->board.find_goal("g")->state, GoalState::kArrived);
 }
 
 TEST(Fleet, LookingForAWayEndsAfterAMinuteWithoutComingAnywhereNew) {
