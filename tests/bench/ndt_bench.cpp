@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <map>
 
@@ -21,6 +20,7 @@
 #include "simulation/random_building.hpp"
 #include "slam/likelihood_grid.hpp"
 #include "slam/surface_points.hpp"
+#include "tests/bench/seeds_option.hpp"
 #include "tests/support/ndt_grid.hpp"
 
 namespace smokemap::bench {
@@ -251,9 +251,4 @@ void run(int seeds) {
 }  // namespace
 }  // namespace smokemap::bench
 
-int main(int argc, char** argv) {
-  int seeds = 20;
-  for (int i = 1; i + 1 < argc; ++i)
-    if (std::strcmp(argv[i], "--seeds") == 0) seeds = std::atoi(argv[i + 1]);
-  smokemap::bench::run(seeds);
-}
+int main(int argc, char** argv) { smokemap::bench::run(smokemap::bench::seeds_option(argc, argv, 20)); }

@@ -6,9 +6,9 @@
 // random building full of smoke with the radar alone, and in the burning one with lidar, radar and both.
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 
 #include "tests/bench/radar_figures.hpp"
+#include "tests/bench/seeds_option.hpp"
 
 namespace smokemap::bench {
 namespace {
@@ -48,9 +48,6 @@ void buildings(int seeds) {
 }  // namespace smokemap::bench
 
 int main(int argc, char** argv) {
-  int seeds = 20;
-  for (int i = 1; i + 1 < argc; ++i)
-    if (std::strcmp(argv[i], "--seeds") == 0) seeds = std::atoi(argv[i + 1]);
   smokemap::bench::twin();
-  smokemap::bench::buildings(seeds);
+  smokemap::bench::buildings(smokemap::bench::seeds_option(argc, argv, 20));
 }

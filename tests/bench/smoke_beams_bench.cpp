@@ -8,13 +8,13 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 
 #include "core/random.hpp"
 #include "simulation/demo_scenario.hpp"
 #include "simulation/lidar.hpp"
 #include "simulation/radar.hpp"
 #include "slam/smoke.hpp"
+#include "tests/bench/seeds_option.hpp"
 
 namespace smokemap::bench {
 namespace {
@@ -120,9 +120,4 @@ void run(int seeds) {
 }  // namespace
 }  // namespace smokemap::bench
 
-int main(int argc, char** argv) {
-  int seeds = 20;
-  for (int i = 1; i + 1 < argc; ++i)
-    if (std::strcmp(argv[i], "--seeds") == 0) seeds = std::atoi(argv[i + 1]);
-  smokemap::bench::run(seeds);
-}
+int main(int argc, char** argv) { smokemap::bench::run(smokemap::bench::seeds_option(argc, argv, 20)); }
