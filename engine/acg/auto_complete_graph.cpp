@@ -148,6 +148,7 @@ AutoCompleteGraph& AutoCompleteGraph::operator=(AutoCompleteGraph&&) noexcept = 
 Result<Ok> AutoCompleteGraph::set_plan(const LayoutMap& plan, const std::optional<PlanStart>& start) {
   auto model = make_plan_model(plan, impl_->params);
   if (!model) return model.error();
+  (void)even_out(impl_->params, *model);
   clear_plan();
   impl_->layout = plan;
   impl_->plan = std::move(*model);

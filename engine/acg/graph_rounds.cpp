@@ -44,6 +44,7 @@ SolveInput AutoCompleteGraph::Impl::make_input(const Learnt& l, const PoseRange&
   input.anchors = anchor_links(l);
   for (const auto& [corner, p_map] : pins) input.pins.push_back({corner, p_map});
   for (const auto& [wall, length_m] : lengths_m) input.lengths.push_back({wall, length_m});
+  if (start) input.start = StartHold{l.state.pose(0), start->T_layout_robot, start->sigma_m, start->sigma_rad};
   input.free_poses = free_poses;
   input.iterations = free_poses.empty() ? 6 : 8;
   for (const WallState state : l.walls) input.wall_firmness.push_back(state == WallState::kMissing ? 0.1 : 1.0);

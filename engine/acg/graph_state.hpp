@@ -68,6 +68,11 @@ struct CornerPin {
   int corner = 0;
   Point2 p_map = Point2::Zero();
 };
+/// The robot's first pose: where it is in map, and where a person says it is on the plan.
+struct StartHold {
+  Pose2 T_map_robot, T_layout_robot;
+  double sigma_m = 0.3, sigma_rad = 0.05;
+};
 struct WallLength {
   int wall = 0;
   double length_m = 0;

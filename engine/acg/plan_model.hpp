@@ -30,6 +30,10 @@ struct PlanModel {
   std::array<std::vector<double>, 2> lines;        ///< coordinate of each line along axis 0 and 1, ascending
   std::array<std::vector<int>, 2> line_of_corner;  ///< index into lines, per corner
   std::vector<int> degree;                         ///< walls at each corner
+  /// Corners and lines where the pull of the lines and that of the walls' shape cancel: what the solver expects, so
+  /// that an uneven drawing by itself neither turns nor shrinks the plan. Empty: as drawn.
+  std::vector<Point2> even_corners;
+  std::array<std::vector<double>, 2> even_lines;
   double metres_per_pixel = 1;
   double scale_sigma = 0.1;
 

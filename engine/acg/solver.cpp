@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "acg/residuals/anchor_cost.hpp"
 #include "acg/residuals/corner_cost.hpp"
@@ -15,10 +17,12 @@
 #include "acg/residuals/pin_cost.hpp"
 #include "acg/residuals/prior_value_cost.hpp"
 #include "acg/residuals/relative_pose_cost.hpp"
+#include "acg/residuals/start_cost.hpp"
 #include "acg/residuals/strip_stretch_cost.hpp"
 #include "acg/residuals/wall_end_cost.hpp"
 #include "acg/residuals/wall_length_cost.hpp"
 #include "acg/residuals/wall_shape_cost.hpp"
+#include "geometry/angle.hpp"
 
 namespace smokemap {
 namespace {
@@ -27,6 +31,8 @@ constexpr double kEdgeWidth = 3.0;  ///< sigmas from which SLAM is thought to ha
 constexpr double kLinesKnow = 2.5;  ///< times less sure than a wall that no line knows
 constexpr double kSigmaPin_m = 0.003;
 constexpr double kSigmaMeasured_m = 0.003;
+constexpr double kStartWidth = 2.0;      ///< sigmas from which a person is thought to have pointed elsewhere
+constexpr double kApartLines_m = 1.0;    ///< lines nearer to each other say little about places far from them
 constexpr double kUnmodelled_m = 0.007;  ///< drawn wall thickness against the true one, bias of the sensor
 
 /// A weight that does not depend on the residual: the robust scheme sets it between solves.
@@ -67,6 +73,20 @@ class ParameterBlocks {
   std::array<std::size_t, 2> lines_at_;
 };
 
+/// The drawn lines on both sides of a place; of one outside of all, the outermost and one well behind it.
+std::optional<std::pair<std::size_t, std::size_t>> lines_beside(const std::vector<double>& drawn, double at) {
+  if (drawn.size() < 2) return std::nullopt;
+  std::size_t next = static_cast<std::size_t>(std::upper_bound(drawn.begin(), drawn.end(), at) - drawn.begin());
+  if (next > 0 && next < drawn.size()) return std::pair{next - 1, next};
+  if (next == 0) {
+    while (++next + 1 < drawn.size() && drawn[next] - drawn.front() < kApartLines_m) continue;
+    return std::pair{std::size_t{0}, next};
+  }
+  std::size_t line = drawn.size() - 1;
+  while (--line > 0 && drawn.back() - drawn[line] < kApartLines_m) continue;
+  return std::pair{line, drawn.size() - 1};
+}
+
 class ProblemBuilder {
  public:
   ProblemBuilder(const SolveInput& input, const AcgParams& params, const GraphState& state, ParameterBlocks& blocks)
@@ -80,11 +100,16 @@ class ProblemBuilder {
     add_lines(problem, 1);
     add_evidence(problem);
     add_words(problem);
+    add_start(problem);
   }
 
  private:
   double* pose(std::size_t i) { return blocks_.pose(i); }
   double* corner(int i) { return blocks_.corner(static_cast<std::size_t>(i)); }
+  bool even() const { return !in_.plan->even_corners.empty(); }
+  const Point2& expected_corner(int i) const {
+    return (even() ? in_.plan->even_corners : in_.plan->corners)[static_cast<std::size_t>(i)];
+  }
 
   void add_poses(ceres::Problem& problem) {
     for (std::size_t i = 0; i < state_.poses.size(); ++i) {
@@ -102,8 +127,9 @@ class ProblemBuilder {
   void add_shape(ceres::Problem& problem, const PlanEdge& edge, double along_share, double firmness) {
     if (!edge.usable || firmness <= 0) return;
     const double corners = std::sqrt(2.0) * params_.sigma_corner_draw_m;
+    const Segment2 drawn{expected_corner(edge.corner_a), expected_corner(edge.corner_b)};
     problem.AddResidualBlock(
-        WallShapeCost::Create(edge.length_m, edge.heading_rad, std::hypot(along_share * edge.length_m, corners),
+        WallShapeCost::Create(drawn.length(), drawn.heading(), std::hypot(along_share * edge.length_m, corners),
                               std::hypot(params_.sigma_wall_turn_rad * edge.length_m, corners)),
         weighted(firmness), corner(edge.corner_a), corner(edge.corner_b), blocks_.turn(), blocks_.log_scale());
   }
@@ -123,13 +149,18 @@ class ProblemBuilder {
   }
 
   void add_lines(ceres::Problem& problem, int axis) {
-    const auto& drawn = in_.plan->lines[static_cast<std::size_t>(axis)];
+    const auto& drawn = (even() ? in_.plan->even_lines : in_.plan->lines)[static_cast<std::size_t>(axis)];
     const auto& line_of = in_.plan->line_of_corner[static_cast<std::size_t>(axis)];
     const auto line = [&](std::size_t i) { return blocks_.line(static_cast<std::size_t>(axis), i); };
     const double heading = in_.plan->axis_rad + axis * kPi / 2;
-    for (std::size_t c = 0; c < line_of.size(); ++c)
-      problem.AddResidualBlock(DrawnLineCost::Create(heading, params_.sigma_corner_draw_m), new ceres::CauchyLoss(2.0),
-                               corner(static_cast<int>(c)), blocks_.turn(), line(static_cast<std::size_t>(line_of[c])));
+    const Point2 across(std::cos(heading), std::sin(heading));
+    for (std::size_t c = 0; c < line_of.size(); ++c) {
+      const auto l = static_cast<std::size_t>(line_of[c]);
+      const double offset = even() ? across.dot(in_.plan->even_corners[c]) - drawn[l] : 0;
+      problem.AddResidualBlock(DrawnLineCost::Create(heading, offset, params_.sigma_corner_draw_m),
+                               new ceres::CauchyLoss(2.0), corner(static_cast<int>(c)), blocks_.turn(), line(l),
+                               blocks_.log_scale());
+    }
     const double sigma = params_.sigma_wall_log_length;
     for (std::size_t k = 0; k + 1 < drawn.size(); ++k) {
       const double width = drawn[k + 1] - drawn[k];
@@ -175,6 +206,27 @@ class ProblemBuilder {
       const PlanEdge& wall = in_.plan->walls[static_cast<std::size_t>(l.wall)];
       problem.AddResidualBlock(WallLengthCost::Create(l.length_m, kSigmaMeasured_m), nullptr, corner(wall.corner_a),
                                corner(wall.corner_b));
+    }
+  }
+
+  /// Until walls are known, nothing else says where the plan lies.
+  void add_start(ceres::Problem& problem) {
+    if (!in_.start) return;
+    const StartHold& hold = *in_.start;
+    const double turn = hold.T_map_robot.heading() - hold.T_layout_robot.heading();
+    problem.AddResidualBlock(PriorValueCost::Create(state_.turn + wrap_angle(turn - state_.turn), hold.sigma_rad),
+                             new ceres::CauchyLoss(kStartWidth), blocks_.turn());
+    for (const std::size_t axis : {0u, 1u}) {
+      const auto& drawn = in_.plan->lines[axis];
+      const double heading = in_.plan->axis_rad + static_cast<double>(axis) * kPi / 2;
+      const double at = Point2(std::cos(heading), std::sin(heading)).dot(hold.T_layout_robot.translation());
+      const auto beside = lines_beside(drawn, at);
+      if (!beside) continue;
+      const auto [line, next] = *beside;
+      problem.AddResidualBlock(StartCost::Create(heading, (at - drawn[line]) / (drawn[next] - drawn[line]),
+                                                 hold.T_map_robot.translation(), hold.sigma_m),
+                               new ceres::CauchyLoss(kStartWidth), blocks_.turn(), blocks_.line(axis, line),
+                               blocks_.line(axis, next));
     }
   }
 
@@ -230,6 +282,28 @@ Result<Ok> solve(const SolveInput& input, const AcgParams& params, const Progres
   if (!summary.IsSolutionUsable())
     return fail(Errc::kNotConverged, "merging plan and map gave no usable answer: " + summary.message);
   blocks.write_to(state);
+  return Ok{};
+}
+
+/// The drawing solved by itself, at its own scale.
+Result<Ok> even_out(const AcgParams& params, PlanModel& plan) {
+  constexpr double kOwnScale = 1e-6;
+  constexpr int kEnough = 30;
+  PlanModel drawing = plan;
+  drawing.scale_sigma = kOwnScale;
+  drawing.even_corners.clear();
+  SolveInput input;
+  input.plan = &drawing;
+  input.wall_firmness.assign(plan.walls.size(), 1);
+  input.iterations = kEnough;
+  GraphState state;
+  for (const Point2& p : plan.corners) state.corners.push_back({p.x(), p.y()});
+  state.lines = plan.lines;
+  if (const auto done = solve(input, params, {}, state); !done) return done;
+  plan.even_corners.clear();
+  const Eigen::Matrix2d back = Pose2(0, 0, -state.turn).rotation();
+  for (const auto& c : state.corners) plan.even_corners.push_back(back * Point2(c[0], c[1]));
+  plan.even_lines = state.lines;
   return Ok{};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "acg/acg_params.hpp"
@@ -29,6 +30,7 @@ struct SolveInput {
   std::vector<AnchorLink> anchors;
   std::vector<CornerPin> pins;
   std::vector<WallLength> lengths;
+  std::optional<StartHold> start;
   std::vector<double>
       wall_firmness;     ///< per wall 0..1: how much the plan's shape counts (low for a wall that is not there)
   PoseRange free_poses;  ///< the others stay where they are
@@ -38,6 +40,9 @@ struct SolveInput {
 /// Levenberg-Marquardt over everything in the state; the first pose stays. One thread, deterministic.
 /// kNotConverged when the answer is not usable (the state is then unchanged), kCancelled on request.
 Result<Ok> solve(const SolveInput& input, const AcgParams& params, const Progress& progress, GraphState& state);
+
+/// Works out the plan's even_corners and even_lines. kNotConverged: they stay empty.
+Result<Ok> even_out(const AcgParams& params, PlanModel& plan);
 
 /// One standard deviation per coordinate of every corner, from the inverse of the normal equations at the solution,
 /// plus what the model leaves out (wall thickness, a sensor's own bias). Cost: one sparse factorisation and two solves

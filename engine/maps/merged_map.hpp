@@ -51,6 +51,9 @@ struct MergedAnchor {
 struct PlanFit {
   double score = 0;                 ///< 0..1: how far plan and sensors explain each other
   std::string verdict = "unknown";  ///< "fits", "doubtful", "does not fit", "unknown"
+
+  /// Another building's plan, or laid wrong: nothing is to be reached by it.
+  bool refuted() const { return verdict == "does not fit"; }
 };
 
 /// Plan and robot map after they corrected each other.

@@ -17,7 +17,7 @@ class Carrier {
 
   /// sigma in metres. No place where the way is unknown, with the reason.
   Transferred to_map(const Place& place) const;
-  bool plan_fits() const { return merged_.fit.verdict != "does not fit"; }
+  bool plan_fits() const { return !merged_.fit.refuted(); }
 
  private:
   Transferred from_layout(const Point2& p_px, int frame_revision) const;

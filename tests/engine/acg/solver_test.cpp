@@ -159,5 +159,52 @@ TEST(CornerSigmas, ShrinkWithEvidenceAndAreLargeWhereNothingWasSeen) {
   EXPECT_THAT(corner_sigmas_m(nothing, {}, GraphState{}), IsOk());
 }
 
+TEST(AcgSolver, LeavesAPlanAtItsStartWhenOneWallIsAllThatIsSeen) {
+  // The wall says nothing about places along it: plans slid by metres before walls around the corner were seen.
+  StretchedRoom room(1.0);
+  for (int i = 0; i < 4; ++i) room.look_from(Pose2(1 + 0.5 * i, 2, 0));
+  std::erase_if(room.input.links, [](const PieceLink& link) { return link.wall != 0; });
+  room.input.start = StartHold{room.state.pose(0), Pose2(1.1, 1.9, 0.02), 0.2, 0.05};
+  for (auto& corner : room.state.corners) corner[0] += 0.8;
+  for (double& line : room.state.lines[0]) line += 0.8;
+  ASSERT_THAT(solve(room.input, {}, {}, room.state), IsOk());
+  EXPECT_LT(room.worst_corner_m(), 0.15);
+}
+
+TEST(AcgSolver, BelievesWallsRatherThanAStartThatIsFarOff) {
+  StretchedRoom room(1.05);
+  for (int i = 0; i < 10; ++i) room.look_from(Pose2(1 + 0.4 * i, 2, 0.3 * i));
+  room.input.start = StartHold{room.state.pose(0), Pose2(2.5, 3.2, 0.3), 0.2, 0.05};
+  ASSERT_THAT(solve(room.input, {}, {}, room.state), IsOk());
+  EXPECT_LT(room.worst_corner_m(), 0.03);
+}
+
+TEST(AcgSolver, KnowsAStartOutsideOfAllDrawnLines) {
+  StretchedRoom room(1.0);
+  room.state.poses.push_back({-2, 7, 0});
+  room.input.start = StartHold{room.state.pose(0), Pose2(-2, 7, 0), 0.2, 0.05};
+  for (auto& corner : room.state.corners) corner[1] -= 1.5;
+  for (double& line : room.state.lines[1]) line -= 1.5;
+  ASSERT_THAT(solve(room.input, {}, {}, room.state), IsOk());
+  EXPECT_LT(room.worst_corner_m(), 0.02);
+}
+
+TEST(AcgSolver, DoesNotShrinkAPlanBecauseItWasDrawnUnevenly) {
+  // Corners up to 9 cm off their lines pulled the whole plan together: the smaller, the nearer.
+  auto random = random_stream(3, 12);
+  StretchedRoom room(1.0);
+  room.plan.scale_sigma = 0.2;
+  for (Point2& p : room.plan.corners) p += Point2(uniform(random, -0.09, 0.09), uniform(random, -0.09, 0.09));
+  ASSERT_THAT(even_out({}, room.plan), IsOk());
+  ASSERT_EQ(room.plan.even_corners.size(), 4u);
+  for (const auto& corner : room.plan.even_corners) EXPECT_TRUE(corner.allFinite());
+  room.state.poses.push_back({3, 2, 0});
+  room.input.start = StartHold{room.state.pose(0), Pose2(3, 2, 0), 0.2, 0.05};
+  ASSERT_THAT(solve(room.input, {}, {}, room.state), IsOk());
+  EXPECT_NEAR(room.state.log_scale, 0, 0.002);
+  for (std::size_t c = 0; c < 4; ++c)
+    EXPECT_LT((room.state.corner(static_cast<int>(c)) - room.plan.corners[c]).norm(), 0.12);
+}
+
 }  // namespace
 }  // namespace smokemap

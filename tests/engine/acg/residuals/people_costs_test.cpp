@@ -1,6 +1,7 @@
 #include "acg/residuals/anchor_cost.hpp"
 #include "acg/residuals/corner_cost.hpp"
 #include "acg/residuals/pin_cost.hpp"
+#include "acg/residuals/start_cost.hpp"
 #include "acg/residuals/wall_length_cost.hpp"
 #include "core/random.hpp"
 #include "tests/engine/acg/residuals/residual_check.hpp"
@@ -43,6 +44,23 @@ TEST(AnchorCost, OnlyLeansWithinAFingersBreadthAndWinsBeyondIt) {
     EXPECT_NEAR(std::hypot(inside[0], inside[1]), 0.8, 1e-6);
     EXPECT_EQ(inside[2], 0);
     EXPECT_NEAR(outside[2], 200, 1e-3);
+  }
+}
+
+TEST(StartCost, IsZeroWhereTheStartLiesBetweenItsLinesAsDrawnAndInStandardDeviationsBesideIt) {
+  auto random = random_stream(4, 6);
+  for (int i = 0; i < 100; ++i) {
+    const double axis = uniform(random, -3, 3), turn = uniform(random, -3, 3), share = uniform(random, -0.5, 1.5);
+    const double line = uniform(random, -9, 9), next = line + uniform(random, 0.5, 6);
+    const Pose2 along(0, 0, axis + turn);
+    const auto at = [&](double off) {
+      const Point2 p = along * Point2(line + share * (next - line) + off, uniform(random, -9, 9));
+      const OwnedCost cost(StartCost::Create(axis, share, p, 0.3));
+      test::expect_jacobian_is_numeric(*cost, {{turn}, {line}, {next}});
+      return residuals_of(*cost, {{turn}, {line}, {next}})[0];
+    };
+    EXPECT_NEAR(at(0), 0, 1e-9);
+    EXPECT_NEAR(at(-0.6), 2, 1e-9);
   }
 }
 

@@ -19,11 +19,18 @@ TEST(DrawnLineCost, IsZeroOnTheLineAndInStandardDeviationsOff) {
     const Pose2 along(0, 0, axis + turn);
     const Point2 on = along * Point2(at, uniform(random, -9, 9)),
                  off = along * Point2(at + 0.1, uniform(random, -9, 9));
-    const OwnedCost cost(DrawnLineCost::Create(axis, 0.05));
-    EXPECT_NEAR(residuals_of(*cost, {{on.x(), on.y()}, {turn}, {at}})[0], 0, 1e-9);
-    EXPECT_NEAR(residuals_of(*cost, {{off.x(), off.y()}, {turn}, {at}})[0], 2, 1e-9);
-    test::expect_jacobian_is_numeric(*cost, {{off.x(), off.y()}, {turn}, {at}});
+    const OwnedCost cost(DrawnLineCost::Create(axis, 0, 0.05));
+    EXPECT_NEAR(residuals_of(*cost, {{on.x(), on.y()}, {turn}, {at}, {0.3}})[0], 0, 1e-9);
+    EXPECT_NEAR(residuals_of(*cost, {{off.x(), off.y()}, {turn}, {at}, {0.3}})[0], 2, 1e-9);
+    test::expect_jacobian_is_numeric(*cost, {{off.x(), off.y()}, {turn}, {at}, {0.3}});
   }
+}
+
+TEST(DrawnLineCost, ExpectsACornerAsFarOffAsItIsDrawnAtThePlansScale) {
+  const OwnedCost cost(DrawnLineCost::Create(0, 0.08, 0.05));
+  EXPECT_NEAR(residuals_of(*cost, {{5.12, 3}, {0}, {5}, {std::log(1.5)}})[0], 0, 1e-9);
+  EXPECT_NEAR(residuals_of(*cost, {{5, 3}, {0}, {5}, {std::log(1.5)}})[0], -2.4, 1e-9);
+  test::expect_jacobian_is_numeric(*cost, {{5.1, 3}, {0.2}, {5}, {0.1}});
 }
 
 TEST(StripStretchCost, IsZeroAtThePlansScaleAndInShares) {
