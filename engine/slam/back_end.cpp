@@ -12,7 +12,8 @@ std::size_t at_node(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-BackEnd::BackEnd(const SlamParams& params) : params_(params), closer_(params), pairs_matcher_(params) {}
+BackEnd::BackEnd(const SlamParams& params)
+    : params_(params), closer_(params), probation_(params.loops), pairs_matcher_(params) {}
 
 bool BackEnd::add(NewNode node, const Progress& progress) {
   const bool new_piece = node.new_piece && !graph_.nodes.empty();
@@ -28,13 +29,15 @@ bool BackEnd::add(NewNode node, const Progress& progress) {
   tried_ += found.tried;
   refused_ += found.rejected;
   if (found.edges.empty()) return false;
-  for (const PoseEdge& edge : found.edges)
+  const std::vector<PoseEdge> believed = probation_.admit(graph_, scans_, found.edges);
+  if (believed.empty()) return false;
+  for (const PoseEdge& edge : believed)
     if (edge.from < piece_begin_) piece_begin_ = -1;
-  loops_.insert(loops_.end(), found.edges.begin(), found.edges.end());
+  loops_.insert(loops_.end(), believed.begin(), believed.end());
   compose_edges();
   // At once, so that the next search starts from the corrected poses; but along a way driven again one loop after
   // another says the same, and on long runs solving for each would be most of the work.
-  const bool news = std::any_of(found.edges.begin(), found.edges.end(), [this](const PoseEdge& edge) {
+  const bool news = std::any_of(believed.begin(), believed.end(), [this](const PoseEdge& edge) {
     return edge_error_sigmas(edge, graph_.nodes[at_node(edge.from)].T_map_robot,
                              graph_.nodes[at_node(edge.to)].T_map_robot) > params_.graph.agrees_within;
   });
@@ -126,7 +129,7 @@ GraphUpdate BackEnd::update(bool moved) const {
   update.links.assign(graph_.edges.begin() + static_cast<std::ptrdiff_t>(steps_.size()), graph_.edges.end());
   update.tried = tried_;
   update.closed = static_cast<int>(loops_.size()) - outvoted_;
-  update.rejected = refused_ + outvoted_;
+  update.rejected = refused_ + outvoted_ + probation_.waiting();
   update.relocated = relocated_;
   update.moved = moved;
   return update;

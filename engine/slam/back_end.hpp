@@ -2,6 +2,7 @@
 
 #include "slam/graph_solver.hpp"
 #include "slam/loop_closer.hpp"
+#include "slam/loop_probation.hpp"
 #include "slam/pair_matcher.hpp"
 
 namespace smokemap {
@@ -51,6 +52,7 @@ class BackEnd {
   PoseGraph graph_;
   NodeScans scans_;
   LoopCloser closer_;
+  LoopProbation probation_;
   PairMatcher pairs_matcher_;
   std::vector<PoseEdge> steps_, loops_, pairs_;
   double searched_way_m_ = 0;

@@ -72,6 +72,7 @@ Result<Ok> LoopParams::validate() const {
       .in_range("bold_sigmas", bold_sigmas, 0, within_sigmas)
       .in_range("most_through_bold", most_through_bold, 0, most_through)
       .in_range("bold_score_more", bold_score_more, 0, 1 - least_align_score)
+      .positive("alike_apart_m", alike_apart_m)
       .result();
 }
 

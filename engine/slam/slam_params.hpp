@@ -74,6 +74,7 @@ struct LoopParams {
   double bold_sigmas = 1.0;         ///< ... but of a loop that corrects the graph by more than this
   double most_through_bold = 0.05;  ///< fewer may, of those that tell places along a corridor apart,
   double bold_score_more = 0.10;    ///< and it must fit better by this
+  double alike_apart_m = 1.5;       ///< places that look alike lie at least this far apart: see LoopProbation
   Result<Ok> validate() const;
 };
 
