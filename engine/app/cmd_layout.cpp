@@ -24,6 +24,7 @@ struct LayoutArguments {
   std::vector<double> plan_at;
   double metres_per_pixel = 0;
   int page = 1;
+  double patience_s = PictureLimits{}.pdf_processor_s;
 };
 
 /// The document as written: `corners` lists places where walls of different directions meet. Ends of walls at doors
@@ -63,6 +64,7 @@ void run_layout(const LayoutArguments& arguments, Outcome& outcome) {
   if (!bytes) return outcome.no_answer(bytes.error());
   PictureLimits limits;
   limits.decode_seconds = 30;  // a busy machine is no reason to refuse a file that somebody named on the command line
+  limits.pdf_processor_s = arguments.patience_s;
   const auto picture = decode_picture(*bytes, limits, arguments.page - 1);
   if (!picture) return outcome.no_answer(picture.error());
   auto reading = read_layout(*picture, options);
@@ -96,6 +98,11 @@ void add_layout(CLI::App& app, Outcome& outcome) {
       ->expected(2);
   command->add_option("--metres-per-pixel", arguments->metres_per_pixel, "of the rectified picture, if it is known");
   command->add_option("--page", arguments->page, "page of a PDF, from 1")->check(CLI::Range(1, 10000));
+  command
+      ->add_option("--patience", arguments->patience_s,
+                   "seconds of processor time that a page of a PDF may take to be drawn")
+      ->check(CLI::Range(0.01, 30.0))
+      ->capture_default_str();
   command->callback([arguments, &outcome] { run_layout(*arguments, outcome); });
 }
 

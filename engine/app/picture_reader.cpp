@@ -37,10 +37,11 @@ Result<bool> is_photograph(std::string_view bytes) {
 
 }  // namespace
 
-Result<server::CleanPicture> PictureReader::clean(std::string_view bytes, int pdf_page) {
+Result<server::CleanPicture> PictureReader::clean(std::string_view bytes, int pdf_page, bool patient) {
   const auto photograph = is_photograph(bytes);
   if (!photograph) return photograph.error();
-  const auto picture = decode_picture(bytes_of(bytes), {}, pdf_page - 1);
+  const auto picture =
+      decode_picture(bytes_of(bytes), patient ? PictureLimits::patient() : PictureLimits{}, pdf_page - 1);
   if (!picture) return picture.error();
   auto clean = encoded(*picture, *photograph);
   if (clean) clean->warnings = picture_warnings(bytes_of(bytes));

@@ -6,6 +6,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -41,15 +42,29 @@ void set_limit(__rlimit_resource resource, std::size_t value) {
   (void)setrlimit(resource, &limit);
 }
 
+/// Ends this process by SIGPROF. Whole seconds of RLIMIT_CPU stand behind, should somebody block the signal.
+void limit_processor_time(double seconds) {
+  sigset_t prof;
+  sigemptyset(&prof);
+  sigaddset(&prof, SIGPROF);
+  (void)sigprocmask(SIG_UNBLOCK, &prof, nullptr);
+  itimerval timer{};
+  timer.it_value.tv_sec = static_cast<time_t>(seconds);
+  timer.it_value.tv_usec = static_cast<suseconds_t>(1e6 * (seconds - std::floor(seconds)));
+  (void)setitimer(ITIMER_PROF, &timer, nullptr);
+  set_limit(RLIMIT_CPU, static_cast<std::size_t>(std::ceil(seconds)) + 1);
+}
+
 [[noreturn]] void child(const ChildLimits& limits, std::size_t bytes_in_use, const std::function<void()>& work) {
-  for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGPROF})
+    std::signal(signal, SIG_DFL);
   (void)prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int nowhere = open("/dev/null", O_RDWR);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) (void)dup2(nowhere, stream);
   (void)close_range(3, ~0U, 0);  // sockets of the server among them
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_FSIZE, 0);
-  set_limit(RLIMIT_CPU, static_cast<std::size_t>(std::ceil(limits.seconds)));
+  limit_processor_time(limits.processor_s);
   if (kLimitsMemory) set_limit(RLIMIT_AS, bytes_in_use + limits.bytes);
   try {
     work();
@@ -111,8 +126,9 @@ Result<Ok> run_in_limited_child(const ChildLimits& limits, const std::function<v
     if (pid == 0) child(limits, bytes_in_use, work);
     const Ended ended = wait_for(pid, limits.seconds);
     if (!ended.in_time && ended.processor_s < kNeverStartedSeconds && attempt == 0) continue;
-    if (!ended.in_time || (WIFSIGNALED(ended.status) && WTERMSIG(ended.status) == SIGXCPU))
-      return fail(Errc::kCorrupt, "took longer than it may");
+    const int signal = WIFSIGNALED(ended.status) ? WTERMSIG(ended.status) : 0;
+    if (!ended.in_time || signal == SIGPROF || signal == SIGXCPU)
+      return fail(Errc::kTooLarge, "took longer than it may");
     if (WIFSIGNALED(ended.status)) return fail(Errc::kCorrupt, "broke the program that reads it");
     if (WEXITSTATUS(ended.status) == kThrew)
       return fail(Errc::kCorrupt, "cannot be read, or needs more memory than it may");

@@ -10,7 +10,8 @@
 namespace smokemap {
 
 struct ChildLimits {
-  double seconds = 5;           ///< wall clock; processor time is limited to the same, rounded up
+  double seconds = 5;           ///< wall clock
+  double processor_s = 5;       ///< processor time, to a few milliseconds: the same on an idle and on a busy machine
   std::size_t bytes = 1 << 30;  ///< memory on top of what this process has now
 };
 
@@ -29,8 +30,8 @@ class SharedMemory {
 };
 
 /// Runs `work` in a forked child that may neither write files nor outlive us, and waits for it. What it should leave
-/// behind it writes into a SharedMemory. kCorrupt when it crashes, throws or exceeds its limits; kIo when there is no
-/// process to be had.
+/// behind it writes into a SharedMemory. kTooLarge when it takes longer than it may; kCorrupt when it crashes, throws or
+/// needs more memory; kIo when there is no process to be had.
 ///
 /// Only this thread exists in the child: `work` must not wait for others (no thread pools, no parallel loops). A child
 /// that waited for a lock another thread held at the fork is started once more.

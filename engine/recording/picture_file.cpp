@@ -91,9 +91,12 @@ Result<cv::Mat> decode_picture(std::span<const std::uint8_t> bytes, const Pictur
       is_pdf ? limits.pdf_megapixels * 1.05e6 + 1e5 : static_cast<double>(header->width_px) * header->height_px;
   const SharedMemory memory(sizeof(PictureAnswer) + static_cast<std::size_t>(3 * pixels));
   if (memory.bytes().empty()) return fail(Errc::kTooLarge, "no memory for the picture");
-  const auto done = run_in_limited_child({limits.decode_seconds, limits.decode_bytes}, [&] {
-    leave(decode_here(bytes, header->type, limits, page), memory.bytes());
-  });
+  const ChildLimits child{limits.decode_seconds, is_pdf ? limits.pdf_processor_s : limits.decode_seconds,
+                          is_pdf ? limits.pdf_bytes : limits.decode_bytes};
+  const auto done =
+      run_in_limited_child(child, [&] { leave(decode_here(bytes, header->type, limits, page), memory.bytes()); });
+  if (!done && is_pdf && done.error().code == Errc::kTooLarge)
+    return fail(Errc::kTooLarge, "this page takes long to draw: ask for it once more, with patience");
   if (!done) return fail(done.error().code, "the picture " + done.error().message);
   PictureAnswer answer;
   std::memcpy(&answer, memory.bytes().data(), sizeof answer);

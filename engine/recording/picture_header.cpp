@@ -38,6 +38,10 @@ std::optional<Size> png_size(PictureBytes bytes) {
   return Size{big_endian(bytes, kWidthAt, 4), big_endian(bytes, kHeightAt, 4)};
 }
 
+bool is_frame_mark(std::uint8_t marker) {
+  return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+}
+
 /// Walks the segments up to the frame header.
 std::optional<Size> jpeg_size(PictureBytes bytes) {
   std::size_t at = 2;
@@ -48,8 +52,7 @@ std::optional<Size> jpeg_size(PictureBytes bytes) {
       ++at;
       continue;
     }
-    const bool is_frame = marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
-    if (is_frame) {
+    if (is_frame_mark(marker)) {
       if (at + 9 > bytes.size()) return std::nullopt;
       return Size{big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2)};
     }
@@ -60,25 +63,41 @@ std::optional<Size> jpeg_size(PictureBytes bytes) {
   return std::nullopt;
 }
 
-/// Whether the compressed data goes on to the end mark. Cameras put more behind it.
-bool jpeg_is_whole(PictureBytes bytes) {
-  constexpr std::uint8_t kScan = 0xDA, kEnd = 0xD9;
+struct JpegData {
+  bool is_whole = false;  ///< the compressed data goes on to the end mark. Cameras put more behind it
+  int scans = 0;
+  int inks = 0;           ///< components of the picture: 1 gray, 3 colour, 4 CMYK
+  bool by_adobe = false;  ///< then four inks are stored inverted
+};
+
+JpegData jpeg_data(PictureBytes bytes) {
+  constexpr std::uint8_t kScan = 0xDA, kEnd = 0xD9, kAdobe = 0xEE;
+  JpegData data;
   bool in_scan = false;
   std::size_t at = 2;
   while (at + 2 <= bytes.size()) {
     const std::uint8_t marker = bytes[at + 1];
     const bool is_data = bytes[at] != 0xFF || marker == 0x00 || marker == 0xFF || (marker >= 0xD0 && marker <= 0xD7);
     if (is_data) {
-      if (!in_scan && marker != 0xFF) return true;  // no chain of segments: the decoder will say so
+      if (!in_scan && marker != 0xFF) {  // no chain of segments: the decoder will say so
+        data.is_whole = true;
+        return data;
+      }
       ++at;
       continue;
     }
-    if (marker == kEnd) return true;
+    if (marker == kEnd) {
+      data.is_whole = true;
+      return data;
+    }
     in_scan = marker == kScan;
-    if (at + 4 > bytes.size()) return false;
+    data.scans += in_scan;
+    data.by_adobe = data.by_adobe || (marker == kAdobe && has_at(bytes, at + 4, "Adobe"));
+    if (is_frame_mark(marker) && at + 10 <= bytes.size()) data.inks = bytes[at + 9];
+    if (at + 4 > bytes.size()) return data;
     at += 2 + std::size_t{big_endian(bytes, at + 2, 2)};
   }
-  return false;
+  return data;
 }
 
 std::optional<Size> webp_size(PictureBytes bytes) {
@@ -114,7 +133,7 @@ bool is_tiff(PictureBytes bytes) {
 
 std::vector<std::string> picture_warnings(PictureBytes bytes) {
   std::vector<std::string> warnings;
-  if (picture_type(bytes) == PictureType::kJpeg && !jpeg_is_whole(bytes))
+  if (picture_type(bytes) == PictureType::kJpeg && !jpeg_data(bytes).is_whole)
     warnings.push_back("The picture file is cut off: its lower part is missing.");
   return warnings;
 }
@@ -139,8 +158,17 @@ Result<Ok> PictureLimits::validate() const {
       .in_range("max_megapixels", max_megapixels, 0.001, 1000)
       .in_range("pdf_megapixels", pdf_megapixels, 0.001, max_megapixels)
       .in_range("decode_seconds", decode_seconds, 0.1, 600)
+      .in_range("pdf_processor_s", pdf_processor_s, 0.01, 600)
       .in_range("decode_bytes", static_cast<double>(decode_bytes), 1e6, 1e11)
+      .in_range("pdf_bytes", static_cast<double>(pdf_bytes), 1e6, 1e11)
+      .in_range("max_jpeg_scans", max_jpeg_scans, 1, 10'000)
       .result();
+}
+
+PictureLimits PictureLimits::patient() {
+  PictureLimits limits;
+  limits.pdf_processor_s = limits.decode_seconds;
+  return limits;
 }
 
 Result<PictureHeader> read_picture_header(PictureBytes bytes, const PictureLimits& limits) {
@@ -161,6 +189,13 @@ Result<PictureHeader> read_picture_header(PictureBytes bytes, const PictureLimit
     return fail(Errc::kTooLarge, "a picture of " + std::to_string(size->width) + " x " + std::to_string(size->height) +
                                      " pixels; at most " + std::to_string(static_cast<int>(limits.max_megapixels)) +
                                      " megapixels are taken");
+  if (*type == PictureType::kJpeg) {
+    const JpegData data = jpeg_data(bytes);
+    if (data.scans > limits.max_jpeg_scans)
+      return fail(Errc::kTooLarge, "a JPEG with more passes than any camera makes");
+    if (data.inks == 4 && !data.by_adobe)
+      return fail(Errc::kUnsupported, "a CMYK JPEG that does not say how its inks are stored; save it as RGB");
+  }
   header.width_px = static_cast<int>(size->width);
   header.height_px = static_cast<int>(size->height);
   return header;

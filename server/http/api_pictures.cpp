@@ -23,7 +23,10 @@ std::string query_text(const Request& request, std::string_view name) {
 Response upload_plan(const ApiParts& p, const Request& request) {
   const std::int64_t page = query_text(request, "page").empty() ? 1 : query_number(request, "page").value_or(0);
   if (page < 1 || page > kMostPages) return error_response(400, "invalid_argument", "page must be a number from 1");
-  const auto picture = p.pictures.clean(request.body, static_cast<int>(page));
+  const std::string patience = query_text(request, "patience");
+  if (!patience.empty() && patience != "0" && patience != "1")
+    return error_response(400, "invalid_argument", "patience must be 0 or 1");
+  const auto picture = p.pictures.clean(request.body, static_cast<int>(page), patience == "1");
   if (!picture) return error_response(picture.error());
   const auto sha = p.files.put(picture->bytes);
   if (!sha) return error_response(sha.error());

@@ -44,8 +44,9 @@ struct SketchReading {
 class PictureService {
  public:
   virtual ~PictureService() = default;
-  /// Bytes as uploaded (PNG, JPEG, WebP or PDF) -> a picture to keep. kUnsupported, kCorrupt, kTooLarge for others.
-  virtual Result<CleanPicture> clean(std::string_view bytes, int pdf_page) = 0;
+  /// Bytes as uploaded (PNG, JPEG, WebP or PDF) -> a picture to keep. kUnsupported, kCorrupt, kTooLarge for others;
+  /// kTooLarge for a page of a PDF that takes over a second to draw, unless somebody waits for it (`patient`).
+  virtual Result<CleanPicture> clean(std::string_view bytes, int pdf_page, bool patient) = 0;
   /// `bytes` as `clean` returned them. kDegenerate when there are no walls in it.
   virtual Result<PlanReading> read_layout(std::string_view bytes, const PlanReadRequest& request) = 0;
   /// Bytes as uploaded -> strokes of a drawing on paper.

@@ -4,11 +4,12 @@
 
 namespace smokemap::test {
 
-/// Takes bytes that begin with "PNG"; a plan with "no walls" in it has none.
+/// Takes bytes that begin with "PNG"; a plan with "no walls" in it has none, a "slow" one needs patience.
 class FakePictures final : public server::PictureService {
  public:
-  Result<server::CleanPicture> clean(std::string_view bytes, int page) override {
+  Result<server::CleanPicture> clean(std::string_view bytes, int page, bool patient) override {
     if (!bytes.starts_with("PNG")) return fail(Errc::kUnsupported, "only PNG, JPEG, WebP and PDF are taken");
+    if (bytes.find("slow") != std::string_view::npos && !patient) return fail(Errc::kTooLarge, "this takes long");
     if (page > 1) return fail(Errc::kNotFound, "there is no such page");
     return server::CleanPicture{std::string(bytes), "image/png", 80, 60, {"it is a test"}};
   }

@@ -239,6 +239,8 @@ describe('the HTTP side', () => {
     await api.uploadPlan(new Blob(['x'], { type: 'application/pdf' }), 3);
     expect(seen[0]!.headers.get('Authorization')).toBe('Bearer secret');
     expect(seen[0]!.url).toBe('http://test/api/plans?page=3');
+    await api.uploadPlan(new Blob(['x'], { type: 'application/pdf' }), 3, true);
+    expect(seen[1]!.url).toBe('http://test/api/plans?page=3&patience=1');
   });
 });
 

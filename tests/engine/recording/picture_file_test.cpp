@@ -202,10 +202,10 @@ TEST(LimitedChild, SaysWhenItsWorkCrashesThrowsOrNeverEnds) {
   EXPECT_THAT(run_in_limited_child({}, [] {}), test::IsOk());
   EXPECT_THAT(run_in_limited_child({}, [] { std::abort(); }), test::Fails(Errc::kCorrupt));
   EXPECT_THAT(run_in_limited_child({}, [] { throw 7; }), test::Fails(Errc::kCorrupt));
-  const auto endless = run_in_limited_child({0.2, 1 << 30}, [] {
+  const auto endless = run_in_limited_child({0.2, 5, 1 << 30}, [] {
     for (std::atomic<int> i = 0;; ++i) continue;
   });
-  ASSERT_THAT(endless, test::Fails(Errc::kCorrupt));
+  ASSERT_THAT(endless, test::Fails(Errc::kTooLarge));
   EXPECT_EQ(endless.error().message, "took longer than it may");
 }
 
@@ -213,7 +213,7 @@ TEST(LimitedChild, MayNotTakeMoreMemoryThanItsShare) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "sanitizers own the address space";
 #endif
-  const auto greedy = run_in_limited_child({5, 64 << 20}, [] {
+  const auto greedy = run_in_limited_child({5, 5, 64 << 20}, [] {
     std::vector<std::uint8_t> much(std::size_t{512} << 20, 1);
     if (much[7] != 1) std::abort();
   });

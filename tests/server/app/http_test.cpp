@@ -117,6 +117,18 @@ TEST(Plans, AreUploadedReadAndShown) {
   EXPECT_EQ(Json::parse(sketch.body)["strokes"][0]["kind"], "wall");
 }
 
+TEST(Plans, ThatAreSlowToDrawAreDrawnForWhoeverHasPatience) {
+  RunningServer running;
+  const std::string token = RunningServer::bearer(running.pair("commander"));
+  RawClient client(running.port());
+  const auto refused = client.ask("POST", "/api/plans", "PNG slow", token);
+  EXPECT_EQ(refused.status, 413);
+  EXPECT_EQ(Json::parse(refused.body)["error"]["code"], "too_large");
+  EXPECT_EQ(client.ask("POST", "/api/plans?patience=0", "PNG slow", token).status, 413);
+  EXPECT_EQ(client.ask("POST", "/api/plans?patience=1", "PNG slow", token).status, 200);
+  EXPECT_EQ(client.ask("POST", "/api/plans?patience=much", "PNG slow", token).status, 400);
+}
+
 TEST(Plans, ThatCannotBeReadGiveOneClearError) {
   RunningServer running;
   const std::string token = RunningServer::bearer(running.pair("commander"));

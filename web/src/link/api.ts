@@ -21,8 +21,9 @@ export class Api {
     return this.#json('POST', '/api/pair', http.parsePairing, body, 'application/json');
   }
 
-  uploadPlan(file: Blob, page = 1): Promise<Answer<http.Upload>> {
-    const query = file.type === 'application/pdf' ? `?page=${page}` : '';
+  /** @param patient a page of a PDF that takes over a second to draw is waited for instead of refused (413) */
+  uploadPlan(file: Blob, page = 1, patient = false): Promise<Answer<http.Upload>> {
+    const query = file.type === 'application/pdf' ? `?page=${page}${patient ? '&patience=1' : ''}` : '';
     return this.#json('POST', `/api/plans${query}`, http.parseUpload, file, file.type);
   }
 

@@ -111,6 +111,11 @@ export const sentencesDe: Readonly<Record<string, string>> = {
   'this page cannot be read': 'diese Seite ist nicht lesbar',
   'this page has no size': 'diese Seite hat keine Größe',
   'this page cannot be drawn': 'diese Seite lässt sich nicht zeichnen',
+  'this page takes long to draw: ask for it once more, with patience':
+    'diese Seite braucht lange zum Zeichnen: noch einmal verlangen, mit Geduld',
+  'a JPEG with more passes than any camera makes': 'ein JPEG mit mehr Durchgängen, als eine Kamera macht',
+  'a CMYK JPEG that does not say how its inks are stored; save it as RGB':
+    'ein CMYK-JPEG, das nicht sagt, wie seine Farben gespeichert sind; bitte als RGB speichern',
   'this is a TIFF; save it as PNG, JPEG or PDF': 'das ist ein TIFF; bitte als PNG, JPEG oder PDF speichern',
   'this is no PNG, JPEG, WebP or PDF': 'das ist kein PNG, JPEG, WebP oder PDF',
   'the file has more than {n} MB': 'die Datei hat mehr als {n} MB',
@@ -150,6 +155,7 @@ export const sentencesDe: Readonly<Record<string, string>> = {
   'there is no such picture': 'dieses Bild gibt es nicht',
   'there is no such plan': 'diesen Plan gibt es nicht',
   'page must be a number from 1': 'die Seite muss eine Zahl ab 1 sein',
+  'patience must be 0 or 1': 'Geduld muss 0 oder 1 sein',
   'no more than {n} devices can be paired': 'mehr als {n} Geräte lassen sich nicht koppeln',
   'too many wrong PINs; try again in {n} s': 'zu viele falsche PINs; in {n} s erneut versuchen',
   "the PIN that the server's console shows is needed": 'die PIN, die der Server zeigt, ist nötig',

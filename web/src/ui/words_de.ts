@@ -143,6 +143,7 @@ export const de: Readonly<Record<Key, string>> = {
   'prepare.page': 'Seite {page}',
   'prepare.pageBefore': 'Zurück',
   'prepare.pageAfter': 'Weiter',
+  'prepare.drawSlow': 'Trotzdem zeichnen (bis 10 s)',
   'prepare.firstPage': 'Das ist die erste Seite.',
   'prepare.taps': 'Korrekturen von Hand: {count}',
   'prepare.discard': 'Zurück zum Plan in Gebrauch',

@@ -141,6 +141,7 @@ export const en = {
   'prepare.page': 'Page {page}',
   'prepare.pageBefore': 'Back',
   'prepare.pageAfter': 'Next',
+  'prepare.drawSlow': 'Draw it all the same (up to 10 s)',
   'prepare.firstPage': 'This is the first page.',
   'prepare.taps': 'Corrections by hand: {count}',
   'prepare.discard': 'Back to the plan in use',

@@ -52,6 +52,8 @@ export interface Shelf {
 const kCornerInset = 0.03;
 /** Larger commands do not fit into a message of the socket and go by HTTP. */
 const kSocketBytes = 200_000;
+/** Larger files are refused whatever is in them. */
+const kMostUploadBytes = 25_000_000;
 
 const defaultCorners = (width: number, height: number): LayoutPx[] => {
   const [x, y] = [width * kCornerInset, height * kCornerInset];
@@ -68,6 +70,8 @@ export class Prepare {
   warnings = $state.raw<readonly string[]>([]);
   /** The document that was chosen, while its pages can be turned. */
   pdf = $state.raw<{ readonly file: Blob; readonly page: number } | null>(null);
+  /** A page that was refused because it takes long to draw; who has patience may ask again. */
+  slow = $state.raw<{ readonly file: Blob; readonly page: number } | null>(null);
   /** What was amiss with the file itself: no reading makes it good. */
   #ofUpload: readonly string[] = [];
   #state = $state.raw<Preparation>(kNothingPrepared);
@@ -167,17 +171,27 @@ export class Prepare {
   }
 
   /** Uploads, then reads at once: walls over the picture come before any question. */
-  async upload(file: Blob, page = 1): Promise<void> {
+  async upload(file: Blob, page = 1, patient = false): Promise<void> {
+    const isPdf = file.type === 'application/pdf';
+    this.slow = null;
     this.busy = t('prepare.uploading');
-    const answer = await this.#session.api.uploadPlan(file, page);
-    if (!answer.ok) return this.#fail(answer.message);
+    const answer = await this.#session.api.uploadPlan(file, page, patient);
+    if (!answer.ok) {
+      if (isPdf && !patient && answer.status === 413 && file.size <= kMostUploadBytes) this.slow = { file, page };
+      return this.#fail(answer.message);
+    }
     const { plan_id, width, height, warnings } = answer.value;
-    this.pdf = file.type === 'application/pdf' ? { file, page } : null;
+    this.pdf = isPdf ? { file, page } : null;
     this.warnings = this.#ofUpload = warnings;
     this.scalePoints = [];
     this.#put(begun({ planId: plan_id, width, height }, defaultCorners(width, height)));
     await this.#loadPictures();
     await this.read(false);
+  }
+
+  /** The page that was refused for its time, however long the server is willing to draw it. */
+  async drawSlow(): Promise<void> {
+    if (this.slow) await this.upload(this.slow.file, this.slow.page, true);
   }
 
   /** Another page of the same document; where there is none, the server says how many there are. */
