@@ -9,6 +9,10 @@ namespace smokemap::server {
 namespace {
 
 constexpr int kMeshSteps = 12;
+/// What is only drawn, and moves by millimetres with every merge, is told no finer: or all of it would be sent again
+/// every second.
+constexpr double kDrawn_m = 0.01;
+constexpr double kLinkPlace_m = 0.05;  ///< links of a corner that lie nearer are one place
 
 double to_ms(Stamp stamp) { return std::floor(static_cast<double>(stamp) * 1e-6); }
 Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
@@ -17,22 +21,33 @@ Json four(const Segment2& s, double step) {
 }
 Json in_map(const Transferred& place) { return place.p ? point_json(*place.p) : Json(nullptr); }
 
-/// The picture as a mesh of triangles and where its nodes lie now, to draw it deformed.
-Json plan_mesh(const LayoutMap& layout, const Deformation& layout_to_map) {
-  Json px = Json::array(), map = Json::array(), triangles = Json::array();
+/// Nodes evenly over the picture, row by row.
+std::vector<Point2> mesh_nodes_px(const LayoutMap& layout) {
+  std::vector<Point2> nodes;
   for (int row = 0; row <= kMeshSteps; ++row)
-    for (int column = 0; column <= kMeshSteps; ++column) {
-      const Point2 p_px((layout.width_px - 1.0) * column / kMeshSteps, (layout.height_px - 1.0) * row / kMeshSteps);
-      px.push_back(point_json(p_px, 0.01));
-      map.push_back(point_json(layout_to_map(layout.frame().to_metres(p_px))));
-    }
+    for (int column = 0; column <= kMeshSteps; ++column)
+      nodes.emplace_back((layout.width_px - 1.0) * column / kMeshSteps, (layout.height_px - 1.0) * row / kMeshSteps);
+  return nodes;
+}
+
+/// The picture as a mesh of triangles, to draw it deformed. Where its nodes lie is told apart: that changes with every
+/// merge, this never.
+Json plan_mesh(const LayoutMap& layout) {
+  Json triangles = Json::array();
   for (int row = 0; row < kMeshSteps; ++row)
     for (int column = 0; column < kMeshSteps; ++column) {
       const int i = row * (kMeshSteps + 1) + column, below = i + kMeshSteps + 1;
       triangles.push_back({i, i + 1, below + 1});
       triangles.push_back({i, below + 1, below});
     }
-  return {{"px", std::move(px)}, {"map", std::move(map)}, {"triangles", std::move(triangles)}};
+  return {{"px", points_json(mesh_nodes_px(layout), 0.01)}, {"triangles", std::move(triangles)}};
+}
+
+Json plan_nodes(const LayoutMap& layout, const Deformation& layout_to_map) {
+  Json map = Json::array();
+  for (const Point2& p_px : mesh_nodes_px(layout))
+    map.push_back(point_json(layout_to_map(layout.frame().to_metres(p_px)), kDrawn_m));
+  return {{"map", std::move(map)}};
 }
 
 Json floor_json(const Snapshot& s, const ServerView& view) {
@@ -60,7 +75,10 @@ Json floor_json(const Snapshot& s, const ServerView& view) {
 PartTable info_table(const Snapshot& s, const ServerView& view) {
   PartTable table;
   table["floor"] = to_text(floor_json(s, view));
-  if (s.layout && s.merged) table["plan_mesh"] = to_text(plan_mesh(s.layout->layout, s.merged->layout_to_map));
+  if (s.layout && s.merged) {
+    table["plan_mesh"] = to_text(plan_mesh(s.layout->layout));
+    table["plan_nodes"] = to_text(plan_nodes(s.layout->layout, s.merged->layout_to_map));
+  }
   if (s.sketch)
     table["sketch"] =
         to_text({{"size", {s.sketch->sketch.width_px, s.sketch->sketch.height_px}}, {"warning", s.sketch->warning}});
@@ -84,21 +102,24 @@ PartTable wall_table(const Snapshot& s) {
   if (!s.merged) return table;
   for (const MergedWall& wall : s.merged->walls)
     table[wall.layout_wall ? "w" + std::to_string(*wall.layout_wall) : "n" + std::to_string(fresh++)] =
-        to_text({{"a", point_json(wall.segment_map.a)},
-                 {"b", point_json(wall.segment_map.b)},
+        to_text({{"a", point_json(wall.segment_map.a, kDrawn_m)},
+                 {"b", point_json(wall.segment_map.b, kDrawn_m)},
                  {"state", to_string(wall.state)},
                  {"confidence", rounded(wall.confidence, 0.01)},
-                 {"moved_m", rounded_m(wall.displacement_m)}});
+                 {"moved_m", rounded(wall.displacement_m, kDrawn_m)}});
   return table;
 }
 
+/// A robot that drives on sees the same corner from hundreds of places: told are the places where it was seen. The id
+/// is what is told, so that nothing is sent again while nothing changes.
 PartTable link_table(const Snapshot& s) {
   PartTable table;
   if (!s.merged) return table;
-  for (std::size_t i = 0; i < s.merged->links.size(); ++i) {
-    const MapLink& link = s.merged->links[i];
-    table[std::to_string(i)] = to_text(
-        {{"p", point_json(link.p_map)}, {"corner", link.layout_corner}, {"state", word_of(kLinkWords, link.state)}});
+  for (const MapLink& link : s.merged->links) {
+    const std::string state = word_of(kLinkWords, link.state);
+    const Json p = point_json(link.p_map, kLinkPlace_m);
+    table[std::to_string(link.layout_corner) + " " + state + " " + to_text(p)] =
+        to_text({{"p", p}, {"corner", link.layout_corner}, {"state", state}});
   }
   return table;
 }

@@ -88,7 +88,7 @@ describe('tablets and the demo', { timeout: 900_000 }, () => {
     const anna = await tablet();
     const probe = await Probe.open(smokemap.url);
     await anna.showEverything();
-    const inside = await probe.until(({ info }) => info?.plan_mesh && mean(info.plan_mesh.map));
+    const inside = await probe.until(({ info }) => info?.plan_nodes && mean(info.plan_nodes.map));
     await anna.tap(inside);
     await anna.page.click('[role=dialog] >> text=Fix the plan here');
     await anna.tap([inside[0] + 0.5, inside[1]]);
@@ -133,7 +133,7 @@ describe('tablets and the demo', { timeout: 900_000 }, () => {
 
 /** The middle of the room farthest from the robot of which no wall was seen. */
 function unseenRoom({ plan_regions, info, walls, robots }) {
-  const mesh = info?.plan_mesh;
+  const mesh = info?.plan_mesh && { ...info.plan_mesh, ...info.plan_nodes };
   const robot = Object.values(robots ?? {})[0];
   if (!mesh || !robot || !plan_regions || !walls) return undefined;
   const seen = Object.values(walls).filter(({ state }) => state !== 'unseen');

@@ -20,6 +20,7 @@ const parts = {
   info: {
     floor: { plan_id: planId, picture: `/api/plans/${planId}/rectified`, size: planSize, metres_per_pixel: 0.04, fit: { score: 0.86, verdict: 'fits' }, revision: 1, grid_bounds: [0, 0, 40, 20], exploring: true, stopped: false },
     plan_mesh: planMesh(),
+    plan_nodes: planMesh(),
     sketch: { size: [1024, 768], warning: '' },
   },
   layout_walls: Object.fromEntries(layoutDocument(planId).walls.map((w, i) => [String(i), { px: w.slice(0, 4), confidence: i % 7 === 5 ? 0.35 : 0.9 }])),

@@ -57,6 +57,16 @@ describe('the world', () => {
     expect(applied).toMatchObject({ ok: true, dropped: 1 });
     expect(apply(kEmptyWorld, delta('info', { floor: 7 }))).toMatchObject({ ok: true, dropped: 1 });
   });
+  test('knows where the plan lies once it has both the mesh and its nodes, and moves the nodes alone', () => {
+    const mesh = { px: [[0, 0], [9, 0], [0, 9]], triangles: [[0, 1, 2]] };
+    const map = [[0, 0], [1, 0], [0, 1]];
+    expect(grown(kEmptyWorld, delta('info', { plan_mesh: mesh })).planMesh).toBeNull();
+    const laid = grown(kEmptyWorld, delta('info', { plan_mesh: mesh, plan_nodes: { map } }));
+    expect(laid.planMesh).toEqual({ ...mesh, map });
+    const moved = [[5, 5], [6, 5], [5, 6]];
+    expect(grown(laid, delta('info', { plan_nodes: { map: moved } }, { rev: 2 })).planMesh).toEqual({ ...mesh, map: moved });
+    expect(grown(laid, delta('info', {}, { rev: 2, del: ['plan_nodes'] })).planMesh).toBeNull();
+  });
   test('of the past comes from a snapshot', () => {
     const world = worldFromSnapshot({ strokes: { a: stroke([[0, 0]]) }, info: { floor: { stopped: true }, sketch: { size: [10, 20] } } });
     expect(world.tables.strokes.size).toBe(1);

@@ -30,7 +30,7 @@ function someWorld(random: () => number): World {
   put('pois', { p: { kind: 'fire', label: 'Küche', author: 'Anna', created_ms: 5, frame: 'map', p: point(), map: null, sigma_m: null, confidence: null, reason: '', removed: false } });
   put('strokes', { s: { kind: 'wall', author: 'Bo', width: 4, points: [point(), point()] } });
   put('info', { floor: { plan_id: 'a', size: [10, 20], stopped: true }, sketch: { size: [30, 40], warning: 'w' } });
-  if (random() < 0.5) put('info', { plan_mesh: { px: [[0, 0], [1, 0], [0, 1]], map: [point(), point(), point()], triangles: [[0, 1, 2]] } });
+  if (random() < 0.5) put('info', { plan_mesh: { px: [[0, 0], [1, 0], [0, 1]], triangles: [[0, 1, 2]] }, plan_nodes: { map: [point(), point(), point()] } });
   return world;
 }
 

@@ -23,7 +23,7 @@ export function saveState(world: World, tiles: TileStore, times: Pick<SavedHead,
   const parts: Record<string, Record<string, unknown>> = {};
   for (const name of partNames) parts[name] = Object.fromEntries(world.tables[name]);
   const { floor, planMesh, sheet } = world;
-  parts['info'] = { ...(floor && { floor }), ...(planMesh && { plan_mesh: planMesh }), sketch: sheet };
+  parts['info'] = { ...(floor && { floor }), ...(planMesh && { plan_mesh: planMesh, plan_nodes: planMesh }), sketch: sheet };
   return { format: 1, ...tiles.position, ...times, revisions: { ...world.revisions }, parts, tiles: [...tiles.tiles.values()] };
 }
 

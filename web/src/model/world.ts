@@ -62,9 +62,10 @@ function applyInfo(world: World, { reset, set, del }: Omit<Message<'delta'>, 'ty
     if (parsed.success) floor = parsed.output;
     else dropped++;
   }
-  if ('plan_mesh' in set) {
-    const parsed = v.safeParse(infoSchemas.plan_mesh, set['plan_mesh']);
-    if (parsed.success) planMesh = parsed.output;
+  if ('plan_mesh' in set || 'plan_nodes' in set) {
+    const mesh = v.safeParse(infoSchemas.plan_mesh, set['plan_mesh'] ?? planMesh);
+    const nodes = v.safeParse(infoSchemas.plan_nodes, set['plan_nodes'] ?? planMesh);
+    if (mesh.success && nodes.success) planMesh = { ...mesh.output, ...nodes.output };
     else dropped++;
   }
   if ('sketch' in set) {
@@ -73,7 +74,7 @@ function applyInfo(world: World, { reset, set, del }: Omit<Message<'delta'>, 'ty
     else dropped++;
   }
   if (del.includes('floor')) floor = null;
-  if (del.includes('plan_mesh')) planMesh = null;
+  if (del.includes('plan_mesh') || del.includes('plan_nodes')) planMesh = null;
   return { ok: true, dropped, world: { ...world, floor, planMesh, sheet } };
 }
 

@@ -49,9 +49,10 @@ const floor = v.object({
 
 const planMesh = v.object({
   px: points,
-  map: points,
   triangles: v.array(v.pipe(v.tuple([number, number, number]), v.readonly())),
 });
+
+const planNodes = v.object({ map: points });
 
 const sketchSheet = v.object({ size: point, warning: text });
 
@@ -105,7 +106,7 @@ const regionKind = v.optional(v.picklist(['room', 'corridor']), 'room');
 const label = v.union([number, v.pipe(v.string(), v.transform(Number), v.number(), v.finite())]);
 
 /** `info` is the one part whose objects differ by id. */
-export const infoSchemas = { floor, plan_mesh: planMesh, sketch: sketchSheet } as const;
+export const infoSchemas = { floor, plan_mesh: planMesh, plan_nodes: planNodes, sketch: sketchSheet } as const;
 
 export const partSchemas = {
   layout_walls: v.object({ px: segment, confidence: v.optional(number, 1), by_person: flag(false) }),
