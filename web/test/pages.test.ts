@@ -153,7 +153,7 @@ describe('what needs eyes now', () => {
     vi.stubGlobal('document', { documentElement: { lang: 'en' } }).stubGlobal('localStorage', { setItem: nothing });
     await setLanguage('de');
     expect(words(opened, Notices, {})).toContain('Dieser Plan scheint nicht zu diesem Gebäude zu gehören.');
-    expect(words(opened, OperatePanel, operate)).toContain('der Roboter kommt im Rauch nicht weiter: etwas steht im Weg');
+    expect(words(opened, OperatePanel, operate)).toContain('Der Roboter kommt im Rauch nicht weiter: etwas steht im Weg');
     await setLanguage('en');
     vi.unstubAllGlobals();
   });

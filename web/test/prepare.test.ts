@@ -97,7 +97,7 @@ describe('a picture that is chosen', () => {
     expect(prepare.step).toBe('corners');
     expect(prepare.draft).toBeUndefined();
     expect(prepare.corners).toHaveLength(4);
-    expect(page.log).toEqual(['warning: there are no walls in it']);
+    expect(page.log).toEqual(['warning: There are no walls in it']);
     server.answers['/read'] = () => JSON.parse(reading) as object;
     prepare.holdCorner(0, [7, 8]);
     prepare.letGo();
@@ -112,7 +112,7 @@ describe('a picture that is chosen', () => {
     server.answers['/api/plans'] = () => 'more than 40 megapixels';
     await prepare.upload(photo);
     expect(prepare.draft).toBe(before);
-    expect(page.log).toEqual(['warning: more than 40 megapixels']);
+    expect(page.log).toEqual(['warning: More than 40 megapixels']);
   });
   test('takes the place of the one before, whose steps cannot come back', async () => {
     const { prepare, server } = await desk();
@@ -135,7 +135,7 @@ describe('the pages of a document', () => {
     server.answers['/api/plans'] = () => 'this PDF has 2 pages';
     await prepare.turnPage(1);
     expect(prepare.pdf?.page).toBe(2);
-    expect(page.log).toEqual(['warning: this PDF has 2 pages']);
+    expect(page.log).toEqual(['warning: This PDF has 2 pages']);
     await prepare.turnPage(-1);
     expect(server.asked.at(-1)).toBe('/api/plans?page=1');
   });

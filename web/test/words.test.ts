@@ -4,7 +4,7 @@ import { kDark, kLight } from '../src/map/palette';
 import { colourCells, paletteWords } from '../src/map/grid_painter';
 import { kTileCells } from '../src/wire/tile_frame';
 import sentences from '../../proto/sentences.json';
-import { sayer } from '../src/ui/sentences';
+import { asSentence, sayer } from '../src/ui/sentences';
 import { sentencesDe } from '../src/ui/sentences_de';
 import { de } from '../src/ui/words_de';
 import { en, type Key } from '../src/ui/words_en';
@@ -64,4 +64,12 @@ test('what no table knows stays as it was said: nothing is lost', () => {
   const say = sayer(sentencesDe);
   for (const text of ['', 'E42', 'a new sentence. With another.', 'toString', '{why}']) expect(say(text)).toBe(text);
   expect(sayer({})('no progress for 30 s')).toBe('no progress for 30 s');
+});
+
+test('a sentence that stands alone begins with a capital, a name as it is written', () => {
+  expect(asSentence('diese Seite braucht lange')).toBe('Diese Seite braucht lange');
+  expect(asSentence('über 40 Megapixel')).toBe('Über 40 Megapixel');
+  expect(asSentence('robot1 is silent')).toBe('robot1 is silent');
+  expect(asSentence('the picture is cut')).toBe('The picture is cut');
+  expect(asSentence('')).toBe('');
 });

@@ -1,5 +1,5 @@
 /** Every word on the screen, in one table per language; a missing key does not compile. English is there at once, others when wanted. */
-import { sayer, type Say } from './sentences';
+import { asSentence, sayer, type Say } from './sentences';
 import { en, type Key } from './words_en';
 
 export type Language = 'en' | 'de';
@@ -49,7 +49,9 @@ export function t(key: Key, values: Readonly<Record<string, string | number>> = 
   return dictionary.words[key].replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
 }
 
-/** What the server said, in the page's language. */
-export const said = (text: string): string => dictionary.say(text);
+/** What the server said, in the page's language, to stand in the middle of a sentence ... */
+export const saidWithin = (text: string): string => dictionary.say(text);
+/** ... or alone. */
+export const said = (text: string): string => asSentence(dictionary.say(text));
 
 export type { Key };

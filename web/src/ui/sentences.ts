@@ -35,3 +35,7 @@ export function sayer(table: Readonly<Record<string, string>>): Say {
   const say = (text: string): string => one(text) ?? text.split(/(?<=\.) (?=[A-Z0-9])/).map((sentence) => one(sentence) ?? sentence).join(' ');
   return say;
 }
+
+/** With a capital, unless it begins with a name such as "robot1". */
+export const asSentence = (text: string): string =>
+  /^\p{Ll}\p{L}*(?![\p{L}\p{N}_])/u.test(text) ? text.charAt(0).toUpperCase() + text.slice(1) : text;

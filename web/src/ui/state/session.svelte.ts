@@ -16,7 +16,7 @@ import { apply, kEmptyWorld, type World } from '../../model/world';
 import { type Command, mayCommand } from '../../wire/commands';
 import type { Message } from '../../wire/messages';
 import type { Role } from '../../wire/parts';
-import { said, t } from '../i18n.svelte';
+import { saidWithin, t } from '../i18n.svelte';
 import { Stop } from './stop.svelte';
 import { Toasts } from './toasts.svelte';
 
@@ -228,7 +228,7 @@ export class Session {
       refused: (entry, message) => {
         this.stop.answered(entry.id, false);
         this.#answered(entry.id, false);
-        this.toasts.show('warning', t('link.refused', { what: nameOf(entry.command), why: said(message) }));
+        this.toasts.show('warning', t('link.refused', { what: nameOf(entry.command), why: saidWithin(message) }));
         this.#updatePending();
       },
       expired: (entry) => {
