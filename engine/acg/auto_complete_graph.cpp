@@ -59,7 +59,7 @@ PlanFit AutoCompleteGraph::Impl::plan_fit(const SolveInput& input, const MergedM
   for (const MergedWall& w : merged.walls) {
     const bool agrees = w.state == WallState::kConfirmed || w.state == WallState::kMoved;
     agreed += agrees ? w.evidence_m : 0;
-    doubted += agrees ? w.evidence_m * doubt_of(l, static_cast<std::size_t>(*w.layout_wall)) : 0;
+    doubted += agrees ? w.evidence_m * line_doubt_of(l, static_cast<std::size_t>(*w.layout_wall)) : 0;
     spoken += w.state != WallState::kUnseen ? w.evidence_m : 0;
   }
   PlanFit fit;

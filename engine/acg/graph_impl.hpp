@@ -37,6 +37,7 @@ class AutoCompleteGraph::Impl {
     std::vector<WallState> walls;
     std::vector<double> linked_m, near_m;  ///< per wall: length with pieces on it, within its gate
     std::vector<double> sigma_m;
+    std::vector<double> rivals_m;  ///< per wall: how far beside it stands what might be it as well; 0: nothing
     BeamMemory beams;
     int updates = 0;
     double searched_way_m = 0;  ///< way that was known when other places of its lines were last looked for
@@ -59,6 +60,7 @@ class AutoCompleteGraph::Impl {
   LineHolds line_holds(const Learnt& learnt) const;
   AcgParams stretch_learnt(const Learnt& learnt) const;
   double doubt_of(const Learnt& learnt, std::size_t wall) const;
+  double line_doubt_of(const Learnt& learnt, std::size_t wall) const;
   Result<Ok> work_out_sigmas(const SolveInput& last, Learnt& learnt) const;
   void put_down(const PlanPlacement& placement, Learnt& learnt) const;
   Result<Ok> take_up(Learnt& learnt, const Progress& progress) const;

@@ -3,6 +3,7 @@
 
 #include "acg/graph_impl.hpp"
 #include "acg/plan_stretch.hpp"
+#include "acg/wall_rivals.hpp"
 
 namespace smokemap {
 namespace {
@@ -13,12 +14,16 @@ constexpr double kOtherPlace_m = 0.4;   ///< a line that would move by less is i
 constexpr int kRearrangements = 4;      ///< each may reach as far as LineChain does
 constexpr double kGain = 0.3;           ///< log odds, from which a line has a reason to move
 constexpr double kBetter = 0.005;       ///< of standing; the beliefs have weighed the arrangement itself
+constexpr double kRivalIsIt = 0.3;      ///< probability that a wall's rival is the drawn one
 constexpr double kDoubt = 0.05;         ///< a probability of another place that is as good as none
 
-/// Per line: what the chance that the nearest seen line is really elsewhere adds. Lines that nobody saw go with those;
-/// how far they may be from them the normal equations know.
+/// Per line: what the chance adds that it, or the nearest one seen well, is really elsewhere. Lines that nobody saw go
+/// with those; how far they may be from them the normal equations know.
 std::vector<double> doubted_variance(const PlanModel& plan, std::size_t axis, const std::vector<LineBelief>& beliefs,
                                      const std::vector<double>& seen_m) {
+  const auto variance = [](const LineBelief& belief) {
+    return belief.elsewhere > kDoubt ? belief.elsewhere * belief.apart_m * belief.apart_m : 0;
+  };
   std::vector<double> out(plan.lines[axis].size(), 0);
   for (std::size_t k = 0; k < out.size() && !beliefs.empty(); ++k) {
     double nearest = 1e9;
@@ -26,9 +31,9 @@ std::vector<double> doubted_variance(const PlanModel& plan, std::size_t axis, co
       const double away = std::abs(plan.lines[axis][s] - plan.lines[axis][k]);
       if (seen_m[s] < kLineSeen_m || away >= nearest) continue;
       nearest = away;
-      const double elsewhere = beliefs[s].elsewhere;
-      out[k] = elsewhere > kDoubt ? elsewhere * beliefs[s].apart_m * beliefs[s].apart_m : 0;
+      out[k] = variance(beliefs[s]);
     }
+    if (!beliefs.empty() && seen_m[k] > 0) out[k] = std::max(out[k], variance(beliefs[k]));
   }
   return out;
 }
@@ -102,6 +107,11 @@ Result<bool> AutoCompleteGraph::Impl::rearrange_axis(std::size_t axis, const std
 
 /// Probability that a wall is really elsewhere.
 double AutoCompleteGraph::Impl::doubt_of(const Learnt& l, std::size_t wall) const {
+  const double beside = wall < l.rivals_m.size() && l.rivals_m[wall] > 0 ? kRivalIsIt : 0;
+  return std::max(beside, line_doubt_of(l, wall));
+}
+
+double AutoCompleteGraph::Impl::line_doubt_of(const Learnt& l, std::size_t wall) const {
   const int axis = plan->offset_axis(plan->walls[wall]);
   if (axis < 0 || l.beliefs[static_cast<std::size_t>(axis)].empty()) return 0;
   const auto& line_of = plan->line_of_corner[static_cast<std::size_t>(axis)];
@@ -129,6 +139,13 @@ Result<Ok> AutoCompleteGraph::Impl::work_out_sigmas(const SolveInput& last, Lear
       l.sigma_m[c] = std::hypot(l.sigma_m[c], std::sqrt(0.5 * variance[line]));
     }
   }
+  l.rivals_m = wall_rivals_m(nodes.views(), nodes.spaced(), *plan, l.state, l.walls);
+  std::vector<double> beside_m(l.sigma_m.size(), 0);
+  for (std::size_t w = 0; w < l.rivals_m.size(); ++w)
+    for (const int c : {plan->walls[w].corner_a, plan->walls[w].corner_b})
+      beside_m[static_cast<std::size_t>(c)] = std::max(beside_m[static_cast<std::size_t>(c)], l.rivals_m[w]);
+  for (std::size_t c = 0; c < beside_m.size(); ++c)
+    l.sigma_m[c] = std::hypot(l.sigma_m[c], std::sqrt(0.5 * kRivalIsIt) * beside_m[c]);
   return Ok{};
 }
 

@@ -91,8 +91,7 @@ SessionCore::SketchOrder SessionCore::sketch_order() const {
 }
 
 std::optional<Point2> SessionCore::place_on_plan(const Point2& p_map) const {
-  if (!board_.layout || merged_->corners.empty() || merged_->fit.refuted() || !p_map.allFinite())
-    return std::nullopt;
+  if (!board_.layout || merged_->corners.empty() || merged_->fit.refuted() || !p_map.allFinite()) return std::nullopt;
   return board_.layout->layout.frame().to_pixels(merged_->layout_to_map.inverse(p_map));
 }
 
@@ -107,8 +106,7 @@ std::vector<Alert> SessionCore::alerts() const {
         {"old-start", "Where the robot stands on the plan is only known from before the restart: say it again.", true});
   if (board_.layout && !board_.layout->layout.scale)
     alerts.push_back({"no-scale", "The plan has no scale yet: a guess is used.", false});
-  if (merged_->fit.refuted())
-    alerts.push_back({"no-fit", "This plan does not seem to fit this building.", true});
+  if (merged_->fit.refuted()) alerts.push_back({"no-fit", "This plan does not seem to fit this building.", true});
   if (sketch_.match && sketch_.to_plan && sketch_.match->matching.same_building < kFitsFrom)
     alerts.push_back({"sketch-no-fit", "The sketch does not seem to show the building of the plan.", false});
   if (!merge_complaint_.empty())
