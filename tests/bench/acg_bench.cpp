@@ -9,8 +9,6 @@
 // figures on one.
 #include <atomic>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <mutex>
@@ -20,6 +18,7 @@
 
 #include "tests/bench/acg_data_figures.hpp"
 #include "tests/bench/acg_figures.hpp"
+#include "tests/bench/bench_options.hpp"
 
 namespace {
 
@@ -137,21 +136,21 @@ void run_seed(const std::vector<Row>& all, std::uint64_t seed, std::vector<std::
 
 int main(int argc, char** argv) {
   int seeds = 10, first = 1;
-  bool published = true, list = false;
+  bool no_published = false, list = false;
   std::string only, data, json_path;
-  for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--no-published") == 0) published = false;
-    if (std::strcmp(argv[i], "--list") == 0) list = true;
-    if (std::strcmp(argv[i], "--seeds") == 0 && i + 1 < argc) seeds = std::atoi(argv[++i]);
-    if (std::strcmp(argv[i], "--first") == 0 && i + 1 < argc) first = std::atoi(argv[++i]);
-    if (std::strcmp(argv[i], "--rows") == 0 && i + 1 < argc) only = argv[++i];
-    if (std::strcmp(argv[i], "--data") == 0 && i + 1 < argc) data = argv[++i];
-    if (std::strcmp(argv[i], "--json") == 0 && i + 1 < argc) json_path = argv[++i];
-  }
+  BenchOptions("The Auto-Complete Graph, white box: plan and robot map correct each other")
+      .number("--seeds", seeds, "how many")
+      .number("--first", first, "seed")
+      .text("--rows", only, "those with this in their name")
+      .flag("--list", list, "names of the rows")
+      .flag("--no-published", no_published, "without the published graphs")
+      .text("--data", data, "folder with acg and floor_plans")
+      .text("--json", json_path, "file for the table")
+      .read(argc, argv);
   std::ofstream json;
   if (!json_path.empty()) json.open(json_path);
   std::vector<Row> wanted;
-  for (const Row& row : rows(published))
+  for (const Row& row : rows(!no_published))
     if (row.scenario.name.find(only) != std::string::npos) wanted.push_back(row);
   if (list) {
     for (const Row& row : wanted) std::printf("%s\n", row.scenario.name.c_str());

@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) {
   using namespace smokemap;
-  const bench::MissionOptions options = bench::mission_options(argc, argv, 20);
+  const bench::MissionOptions options = bench::mission_options(argc, argv, 20, "The demo from start to goal");
   bench::MissionTable table(options);
   table.print_head();
   for (int seed = options.first; seed < options.first + options.seeds; ++seed)

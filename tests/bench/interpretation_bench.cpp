@@ -6,8 +6,6 @@
 #include <sys/resource.h>
 
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <string>
@@ -15,6 +13,7 @@
 #include <vector>
 
 #include "segmentation/constriction.hpp"
+#include "tests/bench/bench_options.hpp"
 #include "tests/bench/foreign_figures.hpp"
 #include "tests/bench/matching_figures.hpp"
 #include "tests/bench/segmentation_figures.hpp"
@@ -80,12 +79,11 @@ int main(int argc, char** argv) {
   std::string data;
   int generated = 40;
   bool every = false;
-  for (int i = 1; i < argc; ++i) {
-    const bool more = i + 1 < argc;
-    if (std::strcmp(argv[i], "--every") == 0) every = true;
-    if (std::strcmp(argv[i], "--data") == 0 && more) data = argv[++i];
-    if (std::strcmp(argv[i], "--generated") == 0 && more) generated = std::atoi(argv[++i]);
-  }
+  bench::BenchOptions("All figures of reading maps: rooms, pairs of rooms, points carried over, how sure, how long")
+      .text("--data", data, "folder with segmentation and sketch_matching")
+      .number("--generated", generated, "sketches")
+      .flag("--every", every, "a line for each map")
+      .read(argc, argv);
   std::printf("Rooms on generated plans\n");
   bench::print_generated_segmentation();
   std::printf("\nPairs and points on generated sketches (seeds 1 to %d and on)\n", generated);

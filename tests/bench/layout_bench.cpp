@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <functional>
@@ -25,6 +24,7 @@
 #include "recording/picture_file.hpp"
 #include "simulation/plan_picture.hpp"
 #include "simulation/random_building.hpp"
+#include "tests/bench/bench_options.hpp"
 #include "tests/bench/layout_figures.hpp"
 
 namespace {
@@ -232,12 +232,12 @@ int main(int argc, char** argv) {
   cv::setNumThreads(1);
   std::string data, plans;
   int seeds = 6;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    if (std::strcmp(argv[i], "--data") == 0) data = argv[i + 1];
-    if (std::strcmp(argv[i], "--plans") == 0) plans = argv[i + 1];
-    if (std::strcmp(argv[i], "--pictures") == 0) pictures_folder = argv[i + 1];
-    if (std::strcmp(argv[i], "--seeds") == 0) seeds = std::atoi(argv[i + 1]);
-  }
+  bench::BenchOptions("How well and how fast plans are read")
+      .text("--data", data, "folder with pictures of known truth")
+      .text("--plans", plans, "folder with the pictures that they name")
+      .text("--pictures", pictures_folder, "folder for what was read")
+      .number("--seeds", seeds, "drawn buildings")
+      .read(argc, argv);
   Rows rows;
   for (int seed = 1; seed <= seeds; ++seed)
     if (!add_renderings(seed, rows)) return 1;

@@ -11,6 +11,7 @@
 
 #include "core/random.hpp"
 #include "server/wire/live_state.hpp"
+#include "tests/bench/bench_options.hpp"
 
 namespace smokemap::server {
 namespace {
@@ -93,4 +94,7 @@ void run() {
 }  // namespace
 }  // namespace smokemap::server
 
-int main() { smokemap::server::run(); }
+int main(int argc, char** argv) {
+  smokemap::bench::BenchOptions("Bytes of the live map while a robot explores").read(argc, argv);
+  smokemap::server::run();
+}

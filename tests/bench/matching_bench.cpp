@@ -5,29 +5,27 @@
 // which the confidences were not fitted to (those have seeds from 1000 on). --regions compares ways of splitting free
 // space: the one matching uses and the default of `smokemap segment`.
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <string>
 
 #include "segmentation/constriction.hpp"
 #include "segmentation/segment.hpp"
+#include "tests/bench/bench_options.hpp"
 #include "tests/bench/matching_figures.hpp"
 
 int main(int argc, char** argv) {
   using namespace smokemap;
   std::string data, method = "structure", regions = "matching";
-  int generated = 30;
-  std::vector<int> taps = {0, 1, 2};
+  int generated = 30, only_taps = -1;
   bool every = false;
-  for (int i = 1; i < argc; ++i) {
-    const bool more = i + 1 < argc;
-    if (std::strcmp(argv[i], "--every") == 0) every = true;
-    if (std::strcmp(argv[i], "--data") == 0 && more) data = argv[++i];
-    if (std::strcmp(argv[i], "--method") == 0 && more) method = argv[++i];
-    if (std::strcmp(argv[i], "--regions") == 0 && more) regions = argv[++i];
-    if (std::strcmp(argv[i], "--generated") == 0 && more) generated = std::atoi(argv[++i]);
-    if (std::strcmp(argv[i], "--taps") == 0 && more) taps = {std::atoi(argv[++i])};
-  }
+  bench::BenchOptions("Matching and point transfer over judged maps and generated sketches")
+      .text("--data", data, "folder with judged maps")
+      .number("--generated", generated, "sketches")
+      .number("--taps", only_taps, "of a person before matching; -1: none, one and two")
+      .text("--method", method, "structure, ursim or voronoi")
+      .text("--regions", regions, "matching or default")
+      .flag("--every", every, "a line for each map")
+      .read(argc, argv);
+  const std::vector<int> taps = only_taps < 0 ? std::vector<int>{0, 1, 2} : std::vector<int>{only_taps};
   MatchParams params;
   if (method == "ursim") params.method = MatchMethod::kUrsim;
   if (method == "voronoi") params.method = MatchMethod::kVoronoi;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
@@ -14,6 +12,7 @@
 #include "layout/read_layout.hpp"
 #include "navigation/cost_map.hpp"
 #include "simulation/path_driver.hpp"
+#include "tests/bench/bench_options.hpp"
 
 namespace smokemap::bench {
 namespace {
@@ -171,21 +170,19 @@ void print_second(const SessionCore& core, double t_s) {
 
 }  // namespace
 
-MissionOptions mission_options(int argc, char** argv, int seeds) {
+MissionOptions mission_options(int argc, char** argv, int seeds, const std::string& about) {
   MissionOptions o;
   o.seeds = seeds;
-  for (int i = 1; i < argc; ++i) {
-    const auto is = [&](const char* name) { return std::strcmp(argv[i], name) == 0; };
-    const bool more = i + 1 < argc;
-    if (is("--read")) o.read = true;
-    if (is("--trace")) o.trace = true;
-    if (is("--seeds") && more) o.seeds = std::atoi(argv[++i]);
-    if (is("--first") && more) o.first = std::atoi(argv[++i]);
-    if (is("--rooms") && more) o.rooms = std::atoi(argv[++i]);
-    if (is("--room") && more) o.room = argv[++i];
-    if (is("--data") && more) o.data = argv[++i];
-    if (is("--pictures") && more) o.pictures = argv[++i];
-  }
+  BenchOptions(about)
+      .number("--seeds", o.seeds, "how many")
+      .number("--first", o.first, "seed")
+      .number("--rooms", o.rooms, "of each building (smoke)")
+      .text("--room", o.room, "only this one (smoke)")
+      .text("--data", o.data, "folder of data sets (missions)")
+      .text("--pictures", o.pictures, "folder for a picture of each mission")
+      .flag("--read", o.read, "the plan as the layout reader reads its picture")
+      .flag("--trace", o.trace, "a line a second")
+      .read(argc, argv);
   return o;
 }
 

@@ -22,7 +22,8 @@ struct MissionOptions {
   bool read = false;     ///< the plan as the layout reader reads its picture
   bool trace = false;    ///< a line a second
 };
-MissionOptions mission_options(int argc, char** argv, int seeds);
+/// @param seeds  if the command line does not say how many
+MissionOptions mission_options(int argc, char** argv, int seeds, const std::string& about);
 
 /// A mission in the building that a real plan shows: the robot starts in the middle of some room from which others can
 /// be reached, out of the smoke if there is any such room. kDegenerate if there is none.

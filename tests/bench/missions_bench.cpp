@@ -28,7 +28,8 @@ Site site_of(const std::string& data, int seed) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bench::MissionOptions options = bench::mission_options(argc, argv, 100);
+  const bench::MissionOptions options = bench::mission_options(
+      argc, argv, 100, "Goals in rooms never visited, with a plan that is wrong as real ones are");
   bench::MissionTable table(options);
   table.print_head();
   for (int seed = options.first; seed < options.first + options.seeds; ++seed) {

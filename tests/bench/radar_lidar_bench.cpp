@@ -5,10 +5,9 @@
 // circle), the relation error of the same steps, and the error of the whole trajectory. Then, a seed a line: ATE in a
 // random building full of smoke with the radar alone, and in the burning one with lidar, radar and both.
 #include <cstdio>
-#include <cstdlib>
 
+#include "tests/bench/bench_options.hpp"
 #include "tests/bench/radar_figures.hpp"
-#include "tests/bench/seeds_option.hpp"
 
 namespace smokemap::bench {
 namespace {
@@ -48,6 +47,8 @@ void buildings(int seeds) {
 }  // namespace smokemap::bench
 
 int main(int argc, char** argv) {
+  const int seeds = smokemap::bench::seeds_option(
+      argc, argv, 20, "Radar and lidar through the twin of the published experiments and through smoke");
   smokemap::bench::twin();
-  smokemap::bench::buildings(smokemap::bench::seeds_option(argc, argv, 20));
+  smokemap::bench::buildings(seeds);
 }

@@ -9,6 +9,7 @@
 #include "core/random.hpp"
 #include "simulation/random_building.hpp"
 #include "simulation/segment_world.hpp"
+#include "tests/bench/bench_options.hpp"
 
 namespace {
 
@@ -70,7 +71,8 @@ void measure(const char* name, const Town& town) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  smokemap::bench::BenchOptions("Rays per second of the simulated world").read(argc, argv);
   std::printf("raycast: 400 places in rooms, 1080 beams a turn, 30 m, one thread, CPU time, seed 1\n");
   measure("one building", build_town(1, 0));
   measure("one building, furnished", build_town(1, 60));

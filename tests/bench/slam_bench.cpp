@@ -15,8 +15,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -24,6 +22,7 @@
 #include <sstream>
 
 #include "recording/sensor_log.hpp"
+#include "tests/bench/bench_options.hpp"
 #include "tests/bench/long_log_figures.hpp"
 #include "tests/bench/radar_figures.hpp"
 #include "tests/bench/reading_figures.hpp"
@@ -256,12 +255,14 @@ struct Options {
 
 Options read_options(int argc, char** argv) {
   Options options;
-  for (int i = 1; i + 1 < argc; ++i) {
-    if (std::strcmp(argv[i], "--data") == 0) options.data = argv[i + 1];
-    if (std::strcmp(argv[i], "--rows") == 0) options.rows = argv[i + 1];
-    if (std::strcmp(argv[i], "--seeds") == 0) options.seeds = std::atoi(argv[i + 1]);
-    if (std::strcmp(argv[i], "--km") == 0) (void)std::sscanf(argv[i + 1], "%d,%d", &options.first_km, &options.last_km);
-  }
+  std::string km;
+  smokemap::bench::BenchOptions("What SLAM reaches, beside what it should")
+      .text("--data", options.data, "folder with logs")
+      .text("--rows", options.rows, "only these: names of logs, km, alike, twin, smoke")
+      .number("--seeds", options.seeds, "buildings full of smoke")
+      .text("--km", km, "FIRST,LAST seed of the generated logs")
+      .read(argc, argv);
+  if (!km.empty()) (void)std::sscanf(km.c_str(), "%d,%d", &options.first_km, &options.last_km);
   return options;
 }
 

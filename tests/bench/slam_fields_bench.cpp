@@ -11,13 +11,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <memory>
 
 #include "core/random.hpp"
 #include "grids/log_odds_grid.hpp"
 #include "slam/align.hpp"
+#include "tests/bench/bench_options.hpp"
 #include "tests/bench/long_log_figures.hpp"
 #include "tests/support/ndt_grid.hpp"
 
@@ -204,9 +204,7 @@ void compare(int seeds, double sigma_m, double sigma_rad) {
 }  // namespace smokemap::bench
 
 int main(int argc, char** argv) {
-  int seeds = 3;
-  for (int i = 1; i + 1 < argc; ++i)
-    if (std::strcmp(argv[i], "--seeds") == 0) seeds = std::atoi(argv[i + 1]);
+  const int seeds = smokemap::bench::seeds_option(argc, argv, 3, "Fields that a scan may be refined on");
   for (const auto& [sigma_m, sigma_rad] : {std::pair{0.02, 0.01}, {0.10, 0.05}, {0.20, 0.10}})
     smokemap::bench::compare(seeds, sigma_m, sigma_rad);
 }

@@ -7,14 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 
 #include "core/random.hpp"
 #include "simulation/demo_scenario.hpp"
 #include "simulation/lidar.hpp"
 #include "simulation/radar.hpp"
 #include "slam/smoke.hpp"
-#include "tests/bench/seeds_option.hpp"
+#include "tests/bench/bench_options.hpp"
 
 namespace smokemap::bench {
 namespace {
@@ -120,4 +119,7 @@ void run(int seeds) {
 }  // namespace
 }  // namespace smokemap::bench
 
-int main(int argc, char** argv) { smokemap::bench::run(smokemap::bench::seeds_option(argc, argv, 20)); }
+int main(int argc, char** argv) {
+  smokemap::bench::run(smokemap::bench::seeds_option(
+      argc, argv, 20, "How surely a lidar echo of smoke is told from a wall, by its range"));
+}

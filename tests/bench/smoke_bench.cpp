@@ -6,7 +6,8 @@
 
 int main(int argc, char** argv) {
   using namespace smokemap;
-  const bench::MissionOptions options = bench::mission_options(argc, argv, 6);
+  const bench::MissionOptions options =
+      bench::mission_options(argc, argv, 6, "Goals in the rooms with the thickest smoke");
   bench::MissionTable table(options);
   table.print_head();
   for (int seed = options.first; seed < options.first + options.seeds; ++seed) {
