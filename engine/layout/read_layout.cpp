@@ -27,6 +27,8 @@ constexpr double kAsGoodAsThePlan = 0.25;  ///< a drawing with so much of the be
 constexpr double kAtTheLimit = 0.95;  ///< of the thickness that walls may have
 constexpr double kWider = 1.5;        ///< is looked for then
 
+constexpr double kSureOfTheSheet = 0.7;  ///< of the proposed corners: below people are told to look
+
 constexpr double kWithoutRooms = 0.49;  ///< what is said of walls then: all are doubtful
 constexpr double kTrusted = 0.935;      ///< of well read plans the mean confidence is higher
 
@@ -265,6 +267,8 @@ Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& 
   map.scale =
       options.metres_per_pixel ? LayoutScale{*options.metres_per_pixel, 0.02, true} : guess_scale(evidence, params);
   add_warnings(map, evidence.bar_division_px.has_value());
+  if (reading.sheet_confidence > 0 && reading.sheet_confidence < kSureOfTheSheet)
+    map.warnings.push_back("Where the sheet ends is not sure: check its four corners.");
   progress.tell(1, "done");
   return reading;
 }

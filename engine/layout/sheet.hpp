@@ -17,6 +17,7 @@ using SheetCorners = std::array<Point2, 4>;  ///< clockwise from top left, pixel
 struct SheetProposal {
   SheetCorners corners_px;
   double confidence = 0;  ///< 0..1; 0 = nothing stood out and the whole picture is proposed
+  double sigma_px = 0;    ///< of a corner, if these are the sides of the sheet at all, which is what confidence says
 };
 
 /// The sheet of paper in a photograph: the quadrilateral that fills a good part of it and differs from what lies around
@@ -24,9 +25,15 @@ struct SheetProposal {
 /// drawing, from the vanishing points of its lines, at less confidence.
 SheetProposal propose_sheet(const cv::Mat& bgr);
 
-/// Every side moved to where paper begins, by at most 1.6 % of the sheet's long side; a side without a clear rim stays.
+/// Every side moved to where paper begins, by at most 1.6 % of the sheet's long side, to a fraction of a pixel; a side
+/// without a clear rim stays.
 /// @param bgr  CV_8UC3
-SheetCorners refine_sheet(const cv::Mat& bgr, const SheetCorners& corners_px);
+struct RefinedSheet {
+  SheetCorners corners_px;
+  double agreement = 0;  ///< of the side least seen: share of its length at which the rim is where the side is
+  double sigma_px = 0;   ///< of the worst corner
+};
+RefinedSheet refine_sheet(const cv::Mat& bgr, const SheetCorners& corners_px);
 
 /// From straight lines in a picture: the rectangle of the sheet that bounds them. Nothing when one of two families of
 /// lines (rows, columns; each within 35 degrees of its axis) does not meet in one point, or when both are parallel: a

@@ -18,7 +18,10 @@ constexpr double kSearchSidePx = 900;
 constexpr std::size_t kMostSides = 14;  ///< lines of each direction that are tried
 constexpr int kSideSamples = 48;
 constexpr double kSameLineDeg = 1.0, kSameLinePx = 2.5;
-constexpr double kStepGrey = 18;  ///< the least difference of two banks, any channel
+constexpr double kUnseenRim = 0.4;        ///< confidence left where one side's rim is not seen at full size
+constexpr double kSeenRim = 0.75;         ///< share of a side at which its rim is seen, for full confidence
+constexpr double kVanishingSigma = 0.05;  ///< of the picture: what a rectangle of the drawing says of the sheet's rim
+constexpr double kStepGrey = 18;          ///< the least difference of two banks, any channel
 
 /// A long edge; its ends are where it was seen.
 struct SideLine {
@@ -262,10 +265,13 @@ SheetProposal propose_sheet(const cv::Mat& bgr) {
   const auto pieces = straight_pieces(small);
   const auto found = SheetSearch(small).best(pieces);
   if (found && found->weakest_side > 0.3) {
-    proposal.corners_px = refine_sheet(bgr, enlarge(found->corners));
-    proposal.confidence = std::clamp((found->weakest_side - 0.3) / 0.6, 0.0, 1.0);
+    const RefinedSheet refined = refine_sheet(bgr, enlarge(found->corners));
+    proposal.corners_px = refined.corners_px;
+    proposal.sigma_px = refined.sigma_px;
+    proposal.confidence = std::clamp((found->weakest_side - 0.3) / 0.6, 0.0, 1.0) *
+                          (kUnseenRim + (1 - kUnseenRim) * std::min(1.0, refined.agreement / kSeenRim));
   } else if (const auto vanishing = propose_by_vanishing_points(pieces, small.size())) {
-    proposal = {enlarge(vanishing->corners_px), vanishing->confidence};
+    proposal = {enlarge(vanishing->corners_px), vanishing->confidence, kVanishingSigma * std::max(bgr.rows, bgr.cols)};
   }
   return proposal;
 }

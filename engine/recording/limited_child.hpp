@@ -30,8 +30,8 @@ class SharedMemory {
 };
 
 /// Runs `work` in a forked child that may neither write files nor outlive us, and waits for it. What it should leave
-/// behind it writes into a SharedMemory. kTooLarge when it takes longer than it may; kCorrupt when it crashes, throws or
-/// needs more memory; kIo when there is no process to be had.
+/// behind it writes into a SharedMemory. kTooLarge when it takes longer than it may; kCorrupt when it crashes, throws
+/// or needs more memory; kIo when there is no process to be had.
 ///
 /// Only this thread exists in the child: `work` must not wait for others (no thread pools, no parallel loops). A child
 /// that waited for a lock another thread held at the fork is started once more.

@@ -1,7 +1,8 @@
 // How well and how fast plans are read: ./run bench layout [--seeds N] [--data DIR [--plans DIR]] [--pictures DIR]
 // Random buildings drawn as evacuation plans (simulation; seeds 1, 2, ...), read flat ("clean"), turned, blurred and
-// noisy ("scan"; every third one a gray copy), and photographed. With --data also pictures with known truth: NAME.json
-// (walls, doors, corners, rooms in pixels; "image" may name a picture below --plans) beside NAME.png or NAME.jpg.
+// noisy ("scan"; every third one a gray copy; "gray": all of them as gray copies), and photographed. With --data also
+// pictures with known truth: NAME.json (walls, doors, corners, rooms in pixels; "image" may name a picture below
+// --plans) beside NAME.png or NAME.jpg.
 // --pictures keeps what was read. Then how far confidences can be trusted, and what hostile files come to. Scores as in
 // layout_figures.hpp. Taps = what a scripted person would do from the first reading to the right plan: one tap for a
 // false wall, one drag for a missing one or for a corner of the sheet that is off by over half a percent. One thread's
@@ -42,6 +43,7 @@ double thread_seconds() {
 struct Row {
   PlanFigures figures;
   double sheet_percent = -1;  ///< mean error of the sheet's corners, of its side
+  double sheet_confidence = 0;
   double cpu_s = 0;
   double scale_sigmas = -1;  ///< error of the guessed scale in its own sigmas; -1 = none
 };
@@ -98,15 +100,15 @@ Row read_and_measure(const std::string& name, const cv::Mat& picture, const Plan
   return row;
 }
 
-/// A copier's view of the sheet: a little askew, soft, noisy, gray for every third building.
-cv::Mat scan_of(const cv::Mat& sheet, int seed, cv::Mat& turn) {
+/// A copier's view of the sheet: a little askew, soft, noisy.
+cv::Mat scan_of(const cv::Mat& sheet, int seed, bool gray, cv::Mat& turn) {
   turn =
       cv::getRotationMatrix2D(cv::Point2f(0.5F * static_cast<float>(sheet.cols), 0.5F * static_cast<float>(sheet.rows)),
                               seed % 2 ? 1.1 : -0.7, 1);
   cv::Mat scan;
   cv::warpAffine(sheet, scan, turn, sheet.size(), cv::INTER_AREA, cv::BORDER_CONSTANT, cv::Scalar(255, 255, 255));
   cv::GaussianBlur(scan, scan, {5, 5}, 0.9);
-  if (seed % 3 == 0) {
+  if (gray) {
     cv::cvtColor(scan, scan, cv::COLOR_BGR2GRAY);
     cv::cvtColor(scan, scan, cv::COLOR_GRAY2BGR);
   }
@@ -142,12 +144,14 @@ bool add_renderings(int seed, Rows& rows) {
   rows["clean"].push_back(clean);
 
   cv::Mat turn;
-  const cv::Mat scan = scan_of(picture->sheet, seed, turn);
-  rows["scan"].push_back(read_and_measure(
-      "scan_" + std::to_string(seed), scan, truth_of(truth.layout, [&](const Point2& p) {
-        return Point2(turn.at<double>(0, 0) * p.x() + turn.at<double>(0, 1) * p.y() + turn.at<double>(0, 2),
-                      turn.at<double>(1, 0) * p.x() + turn.at<double>(1, 1) * p.y() + turn.at<double>(1, 2));
-      })));
+  const cv::Mat scan = scan_of(picture->sheet, seed, seed % 3 == 0, turn);
+  const auto turned = truth_of(truth.layout, [&](const Point2& p) {
+    return Point2(turn.at<double>(0, 0) * p.x() + turn.at<double>(0, 1) * p.y() + turn.at<double>(0, 2),
+                  turn.at<double>(1, 0) * p.x() + turn.at<double>(1, 1) * p.y() + turn.at<double>(1, 2));
+  });
+  rows["scan"].push_back(read_and_measure("scan_" + std::to_string(seed), scan, turned));
+  rows["gray"].push_back(
+      read_and_measure("gray_" + std::to_string(seed), scan_of(picture->sheet, seed, true, turn), turned));
 
   const auto& H = picture->homography.H_layout_photo;
   const cv::Mat inverse = cv::Mat(3, 3, CV_64F, const_cast<double*>(H.data())).inv();
@@ -158,6 +162,7 @@ bool add_renderings(int seed, Rows& rows) {
   const double w = picture->sheet.cols - 1, h = picture->sheet.rows - 1;
   const std::array<Point2, 4> corners{Point2(0, 0), Point2(w, 0), Point2(w, h), Point2(0, h)};
   photo.sheet_percent = 0;
+  photo.sheet_confidence = reading.sheet_confidence;
   for (std::size_t i = 0; i < 4; ++i) {
     const double off = 100 * (through(H, reading.sheet_corners_px[i]) - corners[i]).norm() / w;
     photo.sheet_percent += off / 4;
@@ -226,6 +231,17 @@ void print_trust(const Rows& rows, bool corners) {
               said ? static_cast<double>(right) / said : 0);
 }
 
+void print_sheets(const std::vector<Row>& photos) {
+  constexpr double kWithinPercent = 0.5, kSure = 0.9;
+  int within = 0, sure = 0, sure_within = 0;
+  for (const Row& row : photos) {
+    const bool good = row.sheet_percent <= kWithinPercent, said = row.sheet_confidence >= kSure;
+    within += good, sure += said, sure_within += good && said;
+  }
+  std::printf("sheet corners within %.1f %% of the side: %d of %zu photographs; said >= %.1f: %d, of them within: %d\n",
+              kWithinPercent, within, photos.size(), kSure, sure, sure_within);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -245,6 +261,7 @@ int main(int argc, char** argv) {
   print_table(rows);
   print_trust(rows, false);
   print_trust(rows, true);
+  print_sheets(rows["photo"]);
   int guessed = 0, within = 0;
   for (const auto& row : rows["clean"])
     if (row.scale_sigmas >= 0) guessed += 1, within += row.scale_sigmas <= 2;

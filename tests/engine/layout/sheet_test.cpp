@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
+#include <string>
 
 #include "layout/read_layout.hpp"
 #include "tests/engine/layout/drawn_plan.hpp"
@@ -72,6 +74,27 @@ TEST(Sheet, IsTheWholePictureWhenNothingStandsOut) {
   const auto proposal = propose_sheet(white);
   EXPECT_EQ(proposal.confidence, 0);
   EXPECT_EQ(proposal.corners_px[2], Point2(399, 299));
+}
+
+bool warns_of_corners(const LayoutReading& reading) {
+  return std::any_of(reading.layout.warnings.begin(), reading.layout.warnings.end(),
+                     [](const std::string& w) { return w.find("four corners") != std::string::npos; });
+}
+
+TEST(Sheet, WhoseRimIsHardlySeenIsSaidToBeUnsure) {
+  const auto plan = testing::draw_office();
+  const auto clear = read_layout(photograph(plan));
+  ASSERT_TRUE(clear.ok());
+  EXPECT_GT(clear->sheet_confidence, 0.9);
+  EXPECT_FALSE(warns_of_corners(*clear));
+  cv::Mat faint = photograph(plan);
+  cv::Mat wall;
+  cv::inRange(faint, cv::Scalar(70, 80, 90), cv::Scalar(70, 80, 90), wall);
+  faint.setTo(cv::Scalar(240, 241, 242), wall);  // as white as the paper
+  const auto unsure = read_layout(faint);
+  ASSERT_TRUE(unsure.ok());
+  EXPECT_LT(unsure->sheet_confidence, 0.7);
+  EXPECT_EQ(warns_of_corners(*unsure), unsure->sheet_confidence > 0);
 }
 
 TEST(Sheet, RectifiesWhatWasTilted) {

@@ -111,6 +111,8 @@ export const sentencesDe: Readonly<Record<string, string>> = {
   'this page cannot be read': 'diese Seite ist nicht lesbar',
   'this page has no size': 'diese Seite hat keine Größe',
   'this page cannot be drawn': 'diese Seite lässt sich nicht zeichnen',
+  'Where the sheet ends is not sure: check its four corners.':
+    'Wo das Blatt endet, ist nicht sicher: die vier Ecken prüfen.',
   'this page takes long to draw: ask for it once more, with patience':
     'diese Seite braucht lange zum Zeichnen: noch einmal verlangen, mit Geduld',
   'a JPEG with more passes than any camera makes': 'ein JPEG mit mehr Durchgängen, als eine Kamera macht',
