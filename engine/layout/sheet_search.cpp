@@ -20,6 +20,7 @@ constexpr int kSideSamples = 48;
 constexpr double kSameLineDeg = 1.0, kSameLinePx = 2.5;
 constexpr double kUnseenRim = 0.4;        ///< confidence left where one side's rim is not seen at full size
 constexpr double kSeenRim = 0.75;         ///< share of a side at which its rim is seen, for full confidence
+constexpr double kUnknownSigma = 0.25;    ///< of the picture, where nothing stands out
 constexpr double kVanishingSigma = 0.05;  ///< of the picture: what a rectangle of the drawing says of the sheet's rim
 constexpr double kStepGrey = 18;          ///< the least difference of two banks, any channel
 
@@ -250,7 +251,7 @@ SheetCorners whole_picture(cv::Size size) {
 }  // namespace
 
 SheetProposal propose_sheet(const cv::Mat& bgr) {
-  SheetProposal proposal{whole_picture(bgr.size()), 0};
+  SheetProposal proposal{whole_picture(bgr.size()), 0, kUnknownSigma * std::max(bgr.rows, bgr.cols)};
   const double shrink = std::max(1.0, std::max(bgr.rows, bgr.cols) / kSearchSidePx);
   if (std::min(bgr.rows, bgr.cols) / shrink < 16) return proposal;
   cv::Mat small;
