@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "layout/doors.hpp"
 #include "layout/edit.hpp"
 #include "layout/gaps.hpp"
 #include "layout/wall_graph.hpp"
@@ -125,17 +126,6 @@ void add_glazing(LayoutMap& map, const std::vector<InkStroke>& thin, double thic
   }
 }
 
-/// Half of the doors found so far are wider; nothing below three.
-std::optional<double> usual_door(const LayoutMap& map) {
-  std::vector<double> widths;
-  for (const auto& o : map.openings)
-    if (o.kind == OpeningKind::kDoor) widths.push_back(o.gap_px.length());
-  if (widths.size() < 3) return std::nullopt;
-  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-  std::nth_element(widths.begin(), middle, widths.end());
-  return *middle;
-}
-
 /// How far it is from the place to the next wall or opening, at most the length of the way.
 double free_way(const LayoutMap& map, const Segment2& way) {
   double free = way.length();
@@ -175,7 +165,7 @@ bool has_opening(const LayoutMap& map, const Segment2& gap, double thickness_px)
 /// @param aside  lines that close loose ends already
 void add_openings_at_corners(LayoutMap& map, const std::vector<InkStroke>& thin, const std::vector<Segment2>& aside,
                              double thickness_px, double reach_px) {
-  const auto door = usual_door(map);
+  const auto door = usual_door_width(door_widths(map));
   const double widest_door = door ? std::min(reach_px, kWiderDoor * *door + thickness_px) : reach_px;
   const double widest = door ? std::min(reach_px, kWiderPassage * *door + thickness_px) : reach_px;
   auto ends = joined_ends(map);

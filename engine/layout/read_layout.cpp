@@ -9,6 +9,8 @@
 #include "grids/paper_view.hpp"
 #include "layout/clutter.hpp"
 #include "layout/confidence.hpp"
+#include "layout/doors.hpp"
+#include "layout/drafting.hpp"
 #include "layout/gaps.hpp"
 #include "layout/ink_stroke.hpp"
 #include "layout/openings.hpp"
@@ -27,7 +29,10 @@ constexpr double kAsGoodAsThePlan = 0.25;  ///< a drawing with so much of the be
 constexpr double kAtTheLimit = 0.95;  ///< of the thickness that walls may have
 constexpr double kWider = 1.5;        ///< is looked for then
 
-constexpr double kSureOfTheSheet = 0.7;  ///< of the proposed corners: below people are told to look
+constexpr double kSureOfTheSheet = 0.7;      ///< of the proposed corners: below people are told to look
+constexpr double kThinnerThanHatched = 0.7;  ///< beside a hatched wall: what is as thick would be hatched too
+constexpr double kManyThinner = 0.7;         ///< of the length of hatched walls
+constexpr double kLeastBesideOutline = 1.6;  ///< times an outline's thickness: walls, once the space between is filled
 
 constexpr double kWithoutRooms = 0.49;  ///< what is said of walls then: all are doubtful
 constexpr double kTrusted = 0.935;      ///< of well read plans the mean confidence is higher
@@ -41,13 +46,6 @@ void rescale(LayoutMap& map, double scale) {
   for (auto& s : map.signs) s.p_px = back(s.p_px), s.radius_px /= scale;
   for (auto& d : map.drawings) d.low_px = back(d.low_px), d.high_px = back(d.high_px);
   if (map.you_are_here_px) map.you_are_here_px = back(*map.you_are_here_px);
-}
-
-std::vector<double> door_widths(const LayoutMap& map) {
-  std::vector<double> widths;
-  for (const auto& o : map.openings)
-    if (o.kind == OpeningKind::kDoor) widths.push_back(o.gap_px.length());
-  return widths;
 }
 
 /// Mean confidence of the walls by length.
@@ -151,29 +149,81 @@ Choice without_blocks(const std::vector<InkStroke>& strokes, const cv::Mat& dark
   return {select_walls(free, darkness.size(), params, least_px, at), covered};
 }
 
+/// Strokes of the drawing itself, without the paper's lines and without dimensions.
+/// @param hatched  what is hatched, if wanted; where something is, dimensions stay: they look like hatching then
+std::vector<InkStroke> traced(const cv::Mat& darkness, const LayoutParams& params,
+                              std::vector<HatchedBand>* hatched = nullptr) {
+  const double side = std::max(darkness.rows, darkness.cols);
+  auto strokes = without_ruling(trace_strokes(darkness, params), darkness.size());
+  if (hatched) {
+    *hatched = find_hatching(strokes, kWider * params.max_wall_share * side);
+    if (!hatched->empty()) return strokes;
+  }
+  return without_dimensions(strokes, ink_mask(darkness, params));
+}
+
+/// Closes gaps of paper up to so wide.
+cv::Mat closed(const cv::Mat& darkness, double gap_px) {
+  const int reach = static_cast<int>(std::lround(gap_px)) | 1;
+  cv::Mat filled;
+  cv::morphologyEx(darkness, filled, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_RECT, {reach, reach}));
+  return filled;
+}
+
+/// Thickness of walls drawn as two lines beside thicker hatched ones, where they are about as many; else 0.
+double hollow_beside(const std::vector<HatchedBand>& bands, const WallStrokes& walls) {
+  std::vector<double> thickness;
+  double hatched = 0, hollow = 0, thickest = 0;
+  for (const auto& band : bands) thickness.push_back(band.thickness_px), hatched += band.axis.length();
+  const auto middle = thickness.begin() + static_cast<std::ptrdiff_t>(thickness.size() / 2);
+  std::nth_element(thickness.begin(), middle, thickness.end());
+  for (const auto& s : walls.walls)
+    if (s.hollow && s.thickness_px < kThinnerThanHatched * *middle)
+      hollow += s.length(), thickest = std::max(thickest, s.thickness_px);
+  return hollow > kManyThinner * hatched ? thickest : 0;
+}
+
+/// The drawing once more with what is hatched filled, and what is drawn as two lines beside it.
+Choice choose_hatched(const cv::Mat& darkness, const std::vector<HatchedBand>& bands, const Choice& first,
+                      const LayoutParams& params, const std::optional<Point2>& at) {
+  cv::Mat filled = with_bands_filled(darkness, bands);
+  double least_px = 0;
+  if (const double gap = hollow_beside(bands, first.walls); gap > 0) {
+    least_px = kLeastBesideOutline * first.walls.outline_px;
+    filled = closed(filled, 1.1 * gap);
+  }
+  LayoutParams wider = params;
+  wider.max_wall_share *= kWider;
+  const auto strokes = traced(filled, wider);
+  Choice second{select_walls(strokes, filled.size(), params, least_px, at), first.covered};
+  if (second.walls.walls.empty()) return first;
+  return without_blocks(strokes, filled, std::move(second), least_px, params, at);
+}
+
 /// Walls in the ink. Where the thickest are as thick as walls are looked for, thicker ones are looked for. Where a plan
 /// draws them as two lines, the space between is filled and everything is traced once more: then thickness tells walls
-/// from leaves and treads, as in plans with solid walls, and blur does no harm.
+/// from leaves and treads, as in plans with solid walls, and blur does no harm. The same where it hatches them.
 /// @param at  the drawing at this place, if a person chose one
-Choice choose_walls(const cv::Mat& darkness, const cv::Mat& covered, const LayoutParams& params,
+Choice choose_walls(const cv::Mat& legible, const cv::Mat& covered, const LayoutParams& params,
                     const std::optional<Point2>& at, const Progress& progress) {
-  auto strokes = trace_strokes(darkness, params);
+  const cv::Mat darkness = with_cells_filled(legible, ink_mask(legible, params));
+  std::vector<HatchedBand> hatched;
+  auto strokes = traced(darkness, params, &hatched);
   progress.tell(0.7, "rooms");
   Choice choice{select_walls(strokes, darkness.size(), params, 0, at), covered};
   const double thickest_px = params.max_wall_share * std::max(darkness.rows, darkness.cols);
   if (choice.walls.thickest_px > kAtTheLimit * thickest_px) {
     LayoutParams wider = params;
     wider.max_wall_share *= kWider;
-    strokes = trace_strokes(darkness, wider);
+    strokes = traced(darkness, wider, &hatched);
     choice.walls = select_walls(strokes, darkness.size(), params, 0, at);
   }
   if (choice.walls.walls.empty() || progress.cancelled()) return choice;
+  if (!hatched.empty()) return choose_hatched(darkness, hatched, choice, params, at);
   if (!choice.walls.hollow) return without_blocks(strokes, darkness, std::move(choice), 0, params, at);
-  const int reach = static_cast<int>(std::lround(1.1 * choice.walls.hollow_px)) | 1;
-  const double least_px = 1.6 * choice.walls.outline_px;
-  cv::Mat filled;
-  cv::morphologyEx(darkness, filled, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_RECT, {reach, reach}));
-  const auto solid = trace_strokes(filled, params);
+  const double least_px = kLeastBesideOutline * choice.walls.outline_px;
+  const cv::Mat filled = closed(darkness, 1.1 * choice.walls.hollow_px);
+  const auto solid = traced(filled, params);
   Choice second{select_walls(solid, filled.size(), params, least_px, at), covered};
   if (second.walls.walls.empty()) return choice;
   second = without_blocks(solid, filled, std::move(second), least_px, params, at);

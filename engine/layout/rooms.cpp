@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include "layout/doors.hpp"
+
 namespace smokemap {
 
 namespace {
 
-constexpr std::size_t kDoorsToKnow = 3;  ///< from which their usual width is known
-constexpr double kLeastRoom = 0.5;       ///< of the square of a door's width
+constexpr double kLeastRoom = 0.5;  ///< of the square of a door's width
 
 /// Lines that close what the reader left open: from a loose end without an opening to the nearest wall or corner ahead.
 std::vector<Segment2> shutters(const LayoutMap& map, double reach_px) {
@@ -39,13 +40,8 @@ std::vector<Segment2> shutters(const LayoutMap& map, double reach_px) {
 
 /// Nobody goes into a space that much smaller than the square of a door: a shaft, a pillar, a slip.
 double least_room_area(const LayoutMap& map) {
-  std::vector<double> doors;
-  for (const auto& o : map.openings)
-    if (o.kind == OpeningKind::kDoor) doors.push_back(o.gap_px.length());
-  if (doors.size() < kDoorsToKnow) return 0;
-  const auto middle = doors.begin() + static_cast<std::ptrdiff_t>(doors.size() / 2);
-  std::nth_element(doors.begin(), middle, doors.end());
-  return kLeastRoom * *middle * *middle;
+  const auto door = usual_door_width(door_widths(map));
+  return door ? kLeastRoom * *door * *door : 0;
 }
 
 }  // namespace

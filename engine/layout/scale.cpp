@@ -8,11 +8,11 @@
 #include <cmath>
 
 #include "geometry/angle.hpp"
+#include "layout/doors.hpp"
 
 namespace smokemap {
 namespace {
 
-constexpr std::size_t kFewestDoors = 3;
 constexpr double kBarSigma = 0.02;    ///< a division is measured that well
 constexpr double kBarWrong = 0.05;    ///< what looks like a bar is none
 constexpr double kSheetSigma = 0.03;  ///< margins cut off, paper stretched
@@ -44,14 +44,15 @@ double likelihood(const std::vector<Hump>& humps, double floor, double at) {
   return (1 - floor) * sum / weights + floor * flat;
 }
 
-std::vector<Hump> doors_say(std::vector<double> widths, const LayoutParams& params) {
+/// @param usual  width of a door
+std::vector<Hump> doors_say(std::vector<double> widths, double usual, const LayoutParams& params) {
   std::sort(widths.begin(), widths.end());
   const auto at = [&](double share) {
     return widths[static_cast<std::size_t>(share * static_cast<double>(widths.size() - 1))];
   };
   const double spread = 0.74 * std::log(std::max(1.0, at(0.75) / std::max(1e-9, at(0.25))));
   const double sigma = std::hypot(params.door_width_sigma, spread / std::sqrt(static_cast<double>(widths.size())));
-  return {{std::log(params.door_width_m / at(0.5)), 1, sigma}};
+  return {{std::log(params.door_width_m / usual), 1, sigma}};
 }
 
 std::vector<Hump> bar_says(double division_px) {
@@ -74,7 +75,7 @@ std::optional<LayoutScale> guess_scale(const ScaleEvidence& evidence, const Layo
   for (const double width : evidence.door_widths_px)
     if (width > 0 && std::isfinite(width)) doors.push_back(width);
   std::vector<std::pair<std::vector<Hump>, double>> hints;
-  if (doors.size() >= kFewestDoors) hints.emplace_back(doors_say(doors, params), 0.02);
+  if (const auto usual = usual_door_width(doors)) hints.emplace_back(doors_say(doors, *usual, params), 0.02);
   if (evidence.bar_division_px && *evidence.bar_division_px > 0)
     hints.emplace_back(bar_says(*evidence.bar_division_px), kBarWrong);
   if (evidence.sheet_px && *evidence.sheet_px > 0) hints.emplace_back(sheet_says(*evidence.sheet_px), kSheetOther);

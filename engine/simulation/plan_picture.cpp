@@ -12,6 +12,8 @@
 namespace smokemap {
 namespace {
 
+constexpr double kDimensionPx = 34;  ///< from the building to the first chain, times the sheet's unit
+
 const cv::Scalar kWallInk(25, 25, 25), kThinInk(70, 70, 70), kRouteFill(205, 235, 205), kRouteGreen(80, 132, 0),
     kNameInk(110, 110, 110), kWhite(255, 255, 255);
 
@@ -21,9 +23,11 @@ class PlanPainter {
       : plan_(plan), params_(params), picture_(picture), canvas_(canvas), unit_(params.width_px / 1600.0) {}
 
   void paint(std::mt19937_64& random) {
+    rule_paper(canvas_, params_.ruling, params_.ruling_spacing_m / picture_.metres_per_pixel, 1.2 * unit_);
     if (params_.route) fill_corridors();
     draw_walls();
     if (params_.windows) draw_windows();
+    if (params_.dimensions) draw_all_dimensions();
     if (params_.doors) draw_doors();
     if (params_.room_names) write_names();
     if (params_.route) draw_route();
@@ -58,7 +62,46 @@ class PlanPainter {
   }
 
   void draw_walls() {
-    for (const WallSolid& solid : wall_solids(plan_, drawn_thickness())) canvas_.fill(px(solid.quad()), kWallInk);
+    const std::vector<double> thickness = drawn_thickness();
+    std::vector<Polygon> quads;
+    for (const WallSolid& solid : wall_solids(plan_, thickness)) quads.push_back(px(solid.quad()));
+    const double thickest = *std::max_element(thickness.begin(), thickness.end()) / picture_.metres_per_pixel;
+    draw_cut_walls(canvas_, quads, params_.wall_fill, 1.3 * unit_, params_.hatch_spacing * thickest);
+  }
+
+  /// Along every side of the building one chain by corners and windows and one over all; inside, the width of rooms.
+  void draw_all_dimensions() {
+    std::vector<Point2> places = {};
+    for (const Point2& p : plan_.corners) places.push_back(px(p));
+    Point2 low = places.front(), high = low;
+    for (const Point2& p : places) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    const double first = kDimensionPx * unit_, second = 1.8 * first;
+    for (int axis = 0; axis < 2; ++axis)
+      for (const bool far : {false, true}) {
+        const int other = 1 - axis;
+        const double side = far ? high[other] : low[other], away = far ? 1 : -1;
+        std::vector<Point2> chain;
+        for (const Point2& p : places)
+          if (std::abs(p[other] - side) < 0.5 / picture_.metres_per_pixel) chain.push_back(p);
+        std::sort(chain.begin(), chain.end(), [&](const Point2& a, const Point2& b) { return a[axis] < b[axis]; });
+        if (chain.size() < 2) continue;
+        const auto at = [&](double off) {
+          Point2 p = Point2::Zero(), q = p;
+          p[other] = q[other] = side + away * off, q[axis] = 1;
+          return Segment2{p, q};
+        };
+        draw_dimensions(canvas_, chain, at(first), true, unit_, picture_.metres_per_pixel);
+        draw_dimensions(canvas_, {chain.front(), chain.back()}, at(second), true, unit_, picture_.metres_per_pixel);
+      }
+    for (std::size_t i = 0; i < plan_.rooms.size(); ++i) {
+      if (plan_.rooms[i].corridor) continue;
+      const Polygon ring = px(plan_.outline(static_cast<int>(i)));
+      Point2 inner_low = ring.front(), inner_high = inner_low;
+      for (const Point2& p : ring) inner_low = inner_low.cwiseMin(p), inner_high = inner_high.cwiseMax(p);
+      const double y = inner_low.y() + 0.3 * (inner_high.y() - inner_low.y());
+      const std::vector<Point2> width{{inner_low.x(), y}, {inner_high.x(), y}};
+      draw_dimensions(canvas_, width, {width[0], width[1]}, false, unit_, picture_.metres_per_pixel);
+    }
   }
 
   /// White between the faces, three thin lines along.
@@ -73,6 +116,9 @@ class PlanPainter {
       const Point2 side = gap.half_thickness_m * gap.line.normal();
       for (const double at : {-0.9, 0.0, 0.9})
         canvas_.line(px(Point2(gap.line.a + at * side)), px(Point2(gap.line.b + at * side)), 1.2 * unit_, kWallInk);
+      if (params_.wall_fill != WallFill::kSolid)
+        for (const Point2& end : {gap.line.a, gap.line.b})
+          canvas_.line(px(Point2(end - side)), px(Point2(end + side)), 1.2 * unit_, kWallInk);
     }
   }
 
@@ -197,8 +243,9 @@ void lay_out(const FloorPlan& plan, const PlanPictureParams& params, int height_
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  low -= Point2(1.3, 1.3);  // room for wall thickness and the signs at the exits
-  high += Point2(1.3, 1.3);
+  const double margin = params.dimensions ? 3.5 : 1.3;  // room for wall thickness, signs at the exits, dimensions
+  low -= Point2(margin, margin);
+  high += Point2(margin, margin);
   const double unit = params.width_px / 1600.0;
   const Point2 area_low = params.sheet ? Point2(40, 120) * unit : Point2(10, 10) * unit;
   const Point2 area_high = params.sheet ? Point2(params.width_px - 430 * unit, height_px - 75 * unit)
@@ -217,6 +264,8 @@ Result<Ok> PlanPictureParams::validate() const {
       .in_range("width_px", width_px, 300, 8000)
       .in_range("outer_wall_px", outer_wall_px, 0, 100)
       .in_range("inner_wall_px", inner_wall_px, 0, 100)
+      .in_range("hatch_spacing", hatch_spacing, 0.1, 10)
+      .in_range("ruling_spacing_m", ruling_spacing_m, 0.05, 20)
       .in_range("tilt", tilt, 0, 0.2)
       .in_range("shade", shade, 0, 0.9)
       .in_range("sigma_noise", sigma_noise, 0, 50)

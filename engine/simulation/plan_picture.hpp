@@ -8,6 +8,7 @@
 
 #include "maps/layout_map.hpp"
 #include "simulation/plan_distortion.hpp"
+#include "simulation/plan_drafting.hpp"
 
 namespace smokemap {
 
@@ -15,7 +16,12 @@ struct PlanPictureParams {
   int width_px = 1600;    ///< of the sheet; height follows A3 landscape
   int outer_wall_px = 0;  ///< line width; 0 = true thickness, at least 7 px
   int inner_wall_px = 0;  ///< 0 = true thickness, at least 4 px
-  bool doors = true;      ///< arcs in the gaps
+  WallFill wall_fill = WallFill::kSolid;
+  double hatch_spacing = 0.8;  ///< of the thickness of outer walls
+  bool dimensions = false;     ///< lengths along all four sides and across the rooms, as in drawings of architects
+  PaperRuling ruling = PaperRuling::kNone;
+  double ruling_spacing_m = 1.0;  ///< of the drawing
+  bool doors = true;              ///< arcs in the gaps
   bool windows = true;
   bool route = true;  ///< green arrows along the corridors
   bool signs = true;  ///< red, green and blue symbols

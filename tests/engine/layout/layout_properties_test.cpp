@@ -185,9 +185,19 @@ cv::Mat sheet_of(std::uint64_t seed) {
   const auto building = random_building({}, random);
   const auto plan = building ? distort(*building, {}, random) : Result<DistortedPlan>(building.error());
   PlanPictureParams params;
-  params.width_px = 1700;
+  params.width_px = 1600;
   const auto picture = plan ? draw_plan(plan->drawn, params, random) : Result<PlanPicture>(plan.error());
   return picture ? picture->sheet : cv::Mat();
+}
+
+/// One sheet and what is read of it, for all that compare with it.
+struct ReadSheet {
+  cv::Mat sheet = sheet_of(3);
+  Result<LayoutReading> reading = read_layout(sheet);
+};
+const ReadSheet& read_sheet() {
+  static const ReadSheet read;
+  return read;
 }
 
 /// Share of walls that both readings have, the second carried back by `back`.
@@ -199,11 +209,11 @@ double agreement(const LayoutMap& one, const LayoutMap& two, const std::function
 }
 
 TEST(ReadLayoutProperty, AMirroredSheetHasTheMirroredWalls) {
-  const cv::Mat sheet = sheet_of(3);
+  const auto& [sheet, one] = read_sheet();
   ASSERT_FALSE(sheet.empty());
   cv::Mat mirrored;
   cv::flip(sheet, mirrored, 1);
-  const auto one = read_layout(sheet), two = read_layout(mirrored);
+  const auto two = read_layout(mirrored);
   ASSERT_THAT(one, test::IsOk());
   ASSERT_THAT(two, test::IsOk());
   EXPECT_GT(agreement(one->layout, two->layout, [&](const Point2& p) { return Point2(sheet.cols - 1 - p.x(), p.y()); }),
@@ -211,22 +221,22 @@ TEST(ReadLayoutProperty, AMirroredSheetHasTheMirroredWalls) {
 }
 
 TEST(ReadLayoutProperty, DarkerPaperAndPalerInkChangeLittle) {
-  const cv::Mat sheet = sheet_of(4);
+  const auto& [sheet, one] = read_sheet();
   ASSERT_FALSE(sheet.empty());
   cv::Mat pale;
   sheet.convertTo(pale, -1, 0.6, 60);  // black becomes 60, white 213
-  const auto one = read_layout(sheet), two = read_layout(pale);
+  const auto two = read_layout(pale);
   ASSERT_THAT(one, test::IsOk());
   ASSERT_THAT(two, test::IsOk());
   EXPECT_GT(agreement(one->layout, two->layout, [](const Point2& p) { return p; }), 0.93);
 }
 
 TEST(ReadLayoutProperty, ThePlaceOnThePaperDoesNotMatter) {
-  const cv::Mat sheet = sheet_of(5);
+  const auto& [sheet, one] = read_sheet();
   ASSERT_FALSE(sheet.empty());
   cv::Mat moved;
   cv::copyMakeBorder(sheet, moved, 70, 40, 90, 20, cv::BORDER_CONSTANT, cv::Scalar(255, 255, 255));
-  const auto one = read_layout(sheet), two = read_layout(moved);
+  const auto two = read_layout(moved);
   ASSERT_THAT(one, test::IsOk());
   ASSERT_THAT(two, test::IsOk());
   EXPECT_GT(agreement(one->layout, two->layout, [](const Point2& p) { return Point2(p - Point2(90, 70)); }), 0.93);
@@ -248,8 +258,7 @@ TEST(ReadLayoutProperty, GrayCopiesOfGeneratedSheetsAreReadLikeTheOriginals) {
 }
 
 TEST(ReadLayoutProperty, EverythingLiesInThePicture) {
-  const cv::Mat sheet = sheet_of(9);
-  const auto reading = read_layout(sheet);
+  const auto& [sheet, reading] = read_sheet();
   ASSERT_THAT(reading, test::IsOk());
   const auto& map = reading->layout;
   const auto inside = [&](const Point2& p) {
