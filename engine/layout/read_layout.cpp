@@ -31,6 +31,7 @@ constexpr double kWider = 1.5;        ///< is looked for then
 
 constexpr double kSureOfTheSheet = 0.7;      ///< of the proposed corners: below people are told to look
 constexpr double kThinnerThanHatched = 0.7;  ///< beside a hatched wall: what is as thick would be hatched too
+constexpr double kFragment = 0.4;            ///< of the hatched walls: what was read may be anything
 constexpr double kManyThinner = 0.7;         ///< of the length of hatched walls
 constexpr double kLeastBesideOutline = 1.6;  ///< times an outline's thickness: walls, once the space between is filled
 
@@ -58,9 +59,10 @@ double mean_confidence(const LayoutMap& map) {
   return all > 0 ? sum / all : 0;
 }
 
-/// Lines that close no room may be the edges of the sheet, glare, or a plan drawn in a way that is not understood.
-void doubt_lines_without_rooms(LayoutMap& map) {
-  if (!map.rooms_px.empty()) return;
+/// Lines that close no room may be the edges of the sheet, glare, or a plan drawn in a way that is not understood. So
+/// may a fragment of a plan.
+void doubt_lines_without_rooms(LayoutMap& map, bool fragment) {
+  if (!map.rooms_px.empty() && !fragment) return;
   for (LayoutWall& wall : map.walls)
     if (!wall.by_person) wall.confidence *= kWithoutRooms;
   for (LayoutCorner& corner : map.corners) corner.confidence *= kWithoutRooms;
@@ -110,7 +112,8 @@ Legible legible_ink(const PaperView& view, const cv::Mat& covered, const LayoutP
 
 struct Choice {
   WallStrokes walls;
-  cv::Mat covered;  ///< CV_8UC1, 255 where signs and other figures hide the drawing
+  cv::Mat covered;        ///< CV_8UC1, 255 where signs and other figures hide the drawing
+  bool fragment = false;  ///< of the walls that are hatched only a small part was read
 };
 
 /// What is left of a stroke that begins or ends in a filled figure, if that still is a stroke lying on ink.
@@ -195,9 +198,19 @@ Choice choose_hatched(const cv::Mat& darkness, const std::vector<HatchedBand>& b
   LayoutParams wider = params;
   wider.max_wall_share *= kWider;
   const auto strokes = traced(filled, wider);
-  Choice second{select_walls(strokes, filled.size(), params, least_px, at), first.covered};
+  Choice second{select_walls(strokes, filled.size(), params, least_px, at), first.covered, false};
   if (second.walls.walls.empty()) return first;
-  return without_blocks(strokes, filled, std::move(second), least_px, params, at);
+  second = without_blocks(strokes, filled, std::move(second), least_px, params, at);
+  double all = 0, read = 0;
+  for (const auto& band : bands) {
+    const Point2 middle = band.axis.midpoint();
+    all += band.axis.length();
+    if (std::any_of(second.walls.walls.begin(), second.walls.walls.end(),
+                    [&](const InkStroke& s) { return distance(s.axis, middle) < band.thickness_px; }))
+      read += band.axis.length();
+  }
+  second.fragment = second.walls.drawings.size() == 1 && read < kFragment * all;  // not one floor of several
+  return second;
 }
 
 /// Walls in the ink. Where the thickest are as thick as walls are looked for, thicker ones are looked for. Where a plan
@@ -311,7 +324,7 @@ Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& 
   map.width_px = reading.rectified.cols;
   map.height_px = reading.rectified.rows;
   map.rooms_px = find_rooms(map);
-  doubt_lines_without_rooms(map);
+  doubt_lines_without_rooms(map, choice.fragment);
   ScaleEvidence evidence{door_widths(map), legible.bar_division_px, sheet_side(reading)};
   if (evidence.bar_division_px) *evidence.bar_division_px /= work.scale;
   map.scale =
