@@ -94,6 +94,7 @@ MergedMap AutoCompleteGraph::Impl::read_out(const PoseGraph& graph, const SolveI
   const bool with_plan = !there.empty();
   read_out_new_walls(
       find_new_walls(nodes.views(), nodes.spaced(), with_plan ? &*plan : nullptr, l.state, there, params), out);
+  if (with_plan) out.robot_sigma_m = l.robot_sigma_m;
   if (with_plan) out.fit = plan_fit(input, out, l);
   l.fits = out.fit.verdict == "fits";
   return out;
@@ -125,7 +126,7 @@ Result<MergedMap> AutoCompleteGraph::Impl::update(const PoseGraph& graph, const 
       if (const auto done = correct(work, warm, progress, input); !done) return done.error();
       if (const auto done = question(work, input, progress); !done) return done.error();
       if (const auto done = rearrange(work, input, progress); !done) return done.error();
-      if (const auto done = work_out_sigmas(input, work); !done) return done.error();
+      if (const auto done = work_out_sigmas(input, graph, work); !done) return done.error();
       ++work.updates;
     } else {
       work.sigma_m.assign(plan->corners.size(), start ? 1.0 : 10.0);

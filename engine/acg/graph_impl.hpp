@@ -35,8 +35,9 @@ class AutoCompleteGraph::Impl {
     double taken_way_m = 0;
     double aligned_way_m = 0;  ///< way that was known when the plan was last laid down, or when that was last tried
     std::vector<WallState> walls;
-    std::vector<double> linked_m, near_m;  ///< per wall: length with pieces on it, within its gate
-    std::vector<double> sigma_m;
+    std::vector<double> linked_m, near_m;         ///< per wall: length with pieces on it, within its gate
+    std::vector<double> sigma_m;                  ///< per corner
+    std::map<std::string, double> robot_sigma_m;  ///< of each robot's newest pose
     std::vector<double> rivals_m;  ///< per wall: how far beside it stands what might be it as well; 0: nothing
     BeamMemory beams;
     int updates = 0;
@@ -61,7 +62,7 @@ class AutoCompleteGraph::Impl {
   AcgParams stretch_learnt(const Learnt& learnt) const;
   double doubt_of(const Learnt& learnt, std::size_t wall) const;
   double line_doubt_of(const Learnt& learnt, std::size_t wall) const;
-  Result<Ok> work_out_sigmas(const SolveInput& last, Learnt& learnt) const;
+  Result<Ok> work_out_sigmas(const SolveInput& last, const PoseGraph& graph, Learnt& learnt) const;
   void put_down(const PlanPlacement& placement, Learnt& learnt) const;
   Result<Ok> take_up(Learnt& learnt, const Progress& progress) const;
   Result<Ok> release_tense(Learnt& learnt, const SolveInput& input, const Progress& progress) const;

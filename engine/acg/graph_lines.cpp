@@ -126,11 +126,17 @@ AcgParams AutoCompleteGraph::Impl::stretch_learnt(const Learnt& l) const {
 }
 
 /// From the normal equations, with the stretch that this plan turned out to have, and from what is ambiguous.
-Result<Ok> AutoCompleteGraph::Impl::work_out_sigmas(const SolveInput& last, Learnt& l) const {
+Result<Ok> AutoCompleteGraph::Impl::work_out_sigmas(const SolveInput& last, const PoseGraph& graph, Learnt& l) const {
   if (l.sigma_m.size() == plan->corners.size() && l.updates % params.covariance_every != 0) return Ok{};
-  auto sigmas = corner_sigmas_m(last, stretch_learnt(l), l.state);
+  std::map<std::string, std::size_t> newest;
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) newest[graph.nodes[i].robot] = i;
+  std::vector<std::size_t> poses;
+  for (const auto& [robot, i] : newest) poses.push_back(i);
+  auto sigmas = sigmas_at(last, stretch_learnt(l), l.state, poses);
   if (!sigmas) return sigmas.error();
-  l.sigma_m = std::move(*sigmas);
+  l.sigma_m = std::move(sigmas->corners_m);
+  l.robot_sigma_m.clear();
+  for (const auto& [robot, i] : newest) l.robot_sigma_m[robot] = sigmas->poses_m[l.robot_sigma_m.size()];
   for (const std::size_t axis : {0u, 1u}) {
     const std::vector<double> variance =
         doubted_variance(*plan, axis, l.beliefs[axis], seen_on_lines_m(*plan, axis, l.walls, l.linked_m));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -307,40 +308,42 @@ Result<Ok> even_out(const AcgParams& params, PlanModel& plan) {
   return Ok{};
 }
 
-Result<std::vector<double>> corner_sigmas_m(const SolveInput& input, const AcgParams& params, const GraphState& state) {
-  std::vector<double> sigmas(state.corners.size(), 0);
+Result<Sigmas> sigmas_at(const SolveInput& input, const AcgParams& params, const GraphState& state,
+                         const std::vector<std::size_t>& poses) {
+  Sigmas sigmas{std::vector<double>(state.corners.size(), 0), std::vector<double>(poses.size(), 0)};
   if (input.plan == nullptr) return sigmas;
   ParameterBlocks memory(state);
   ceres::Problem problem;
   ProblemBuilder(input, params, state, memory).build(problem);
   ceres::Problem::EvaluateOptions what;
-  std::vector<double*> blocks, free_blocks;
+  std::vector<double*> blocks;
   problem.GetParameterBlocks(&blocks);
-  std::vector<int> first_column(state.corners.size(), -1);
+  std::map<const double*, int> first_column;
   int column = 0;
   for (double* block : blocks) {
     if (problem.IsParameterBlockConstant(block)) continue;
-    free_blocks.push_back(block);
-    if (block >= memory.corner(0) && block < memory.turn())
-      first_column[static_cast<std::size_t>(block - memory.corner(0)) / 2] = column;
+    what.parameter_blocks.push_back(block);
+    first_column[block] = column;
     column += problem.ParameterBlockSize(block);
   }
-  what.parameter_blocks = free_blocks;
   ceres::CRSMatrix jacobian;
   if (!problem.Evaluate(what, nullptr, nullptr, nullptr, &jacobian))
     return fail(Errc::kNotConverged, "the sigmas of the merged map could not be worked out");
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(normal_matrix(jacobian));
   if (factor.info() != Eigen::Success)
     return fail(Errc::kNotConverged, "the sigmas of the merged map could not be worked out");
-  for (std::size_t c = 0; c < sigmas.size(); ++c) {
-    if (first_column[c] < 0) continue;
+  const auto sigma_m = [&](const double* block, double unmodelled_m) {
+    const auto first = first_column.find(block);
+    if (first == first_column.end()) return 0.0;
     double variance = 0;
     for (int k = 0; k < 2; ++k) {
-      const Eigen::VectorXd unit = Eigen::VectorXd::Unit(jacobian.num_cols, first_column[c] + k);
-      variance += 0.5 * factor.solve(unit)[first_column[c] + k];
+      const Eigen::VectorXd unit = Eigen::VectorXd::Unit(jacobian.num_cols, first->second + k);
+      variance += 0.5 * factor.solve(unit)[first->second + k];
     }
-    sigmas[c] = std::hypot(std::sqrt(std::max(0.0, variance)), kUnmodelled_m);
-  }
+    return std::hypot(std::sqrt(std::max(0.0, variance)), unmodelled_m);
+  };
+  for (std::size_t c = 0; c < state.corners.size(); ++c) sigmas.corners_m[c] = sigma_m(memory.corner(c), kUnmodelled_m);
+  for (std::size_t i = 0; i < poses.size(); ++i) sigmas.poses_m[i] = sigma_m(memory.pose(poses[i]), 0);
   return sigmas;
 }
 

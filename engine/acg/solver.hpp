@@ -44,9 +44,16 @@ Result<Ok> solve(const SolveInput& input, const AcgParams& params, const Progres
 /// Works out the plan's even_corners and even_lines. kNotConverged: they stay empty.
 Result<Ok> even_out(const AcgParams& params, PlanModel& plan);
 
-/// One standard deviation per coordinate of every corner, from the inverse of the normal equations at the solution,
-/// plus what the model leaves out (wall thickness, a sensor's own bias). Cost: one sparse factorisation and two solves
-/// a corner.
-Result<std::vector<double>> corner_sigmas_m(const SolveInput& input, const AcgParams& params, const GraphState& state);
+/// One standard deviation per coordinate, against the first pose of all.
+struct Sigmas {
+  std::vector<double> corners_m;
+  std::vector<double> poses_m;  ///< of those asked for
+};
+
+/// Of every corner and of the poses asked for (positions in GraphState::poses), from the inverse of the normal
+/// equations at the solution; of corners plus what the model leaves out (wall thickness, a sensor's own bias). Without
+/// a plan: 0. Cost: one sparse factorisation and two solves each.
+Result<Sigmas> sigmas_at(const SolveInput& input, const AcgParams& params, const GraphState& state,
+                         const std::vector<std::size_t>& poses = {});
 
 }  // namespace smokemap

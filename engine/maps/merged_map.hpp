@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -66,6 +67,9 @@ struct MergedMap {
   Deformation layout_to_map;          ///< layout (metres) -> map; identity without a plan
   Trajectory trajectory;              ///< corrected, one per pose node
   PlanFit fit;
+  /// One standard deviation per coordinate of where each robot's newest node is, against the first node of all: what
+  /// drift left on the way there. Empty before the plan was laid.
+  std::map<std::string, double> robot_sigma_m;
 };
 
 }  // namespace smokemap

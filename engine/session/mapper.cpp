@@ -58,7 +58,9 @@ std::optional<PoseReport> Mapper::report(const std::string& robot, Track& track,
   report.robot = robot;
   report.T_graph_robot = union_.T_union_slam(robot).value_or(Pose2()) * outcome->pose.T_map_robot;
   const double since_node_m = std::sqrt(std::max(0.0, 0.5 * outcome->pose.covariance.topLeftCorner<2, 2>().trace()));
-  report.sigma_m = std::hypot(since_node_m, kMapSigmaM, track.join_sigma_m);
+  const auto in_graph = floor_->merged->robot_sigma_m.find(robot);
+  const bool counted = joined && in_graph != floor_->merged->robot_sigma_m.end();
+  report.sigma_m = std::hypot(since_node_m, kMapSigmaM, counted ? in_graph->second : track.join_sigma_m);
   report.sigma_rad = std::sqrt(std::max(0.0, outcome->pose.covariance(2, 2)));
   report.localized = joined && (outcome->fate == ScanFate::kMatched || outcome->fate == ScanFate::kFirst);
   report.speed_mps = track.speed_mps;

@@ -257,7 +257,8 @@ FalseCells count_false(const DemoScenario& demo, const test::MissionResult& r) {
 
 void MissionTable::print_head() const {
   std::printf(
-      "mission        room       smoke 1/m  goal       after s  error m  pose m  bumps  plan corners before -> after  "
+      "mission        room       smoke 1/m  goal       after s  error m  pose m said  bumps  plan corners before -> "
+      "after  "
       "false wall: clear smoke  false free  wall free m  CPU s  reason\n");
 }
 
@@ -284,12 +285,14 @@ void MissionTable::fly(const std::string& name, const DemoScenario& demo, test::
   false_free_ += cells.free;
   wall_free_m_ += cells.wall_free_m;
   pose_errors_m_.push_back(r.pose_error_m);
+  within_two_sigma_ += r.pose_error_m <= 2 * r.pose_sigma_m;
   cpu_s_.push_back(cpu_s);
   if (r.goal != GoalState::kArrived) ++reasons_[r.reason.empty() ? kNoReason : r.reason];
-  std::printf("%-14s %-10s %9.2f  %-9s  %7.1f  %7.2f  %6.2f  %5d  %17.2f -> %5.2f  %16d %5d  %10d  %11.2f  %5.1f  %s\n",
-              name.c_str(), demo.far_room.c_str(), r.smoke.extinction_at(demo.p_world_far_room), to_string(r.goal),
-              r.time_s, r.goal_error_m, r.pose_error_m, r.bumps, r.before_median_m, r.after_median_m,
-              cells.occupied_clear, cells.occupied_smoke, cells.free, cells.wall_free_m, cpu_s, r.reason.c_str());
+  std::printf(
+      "%-14s %-10s %9.2f  %-9s  %7.1f  %7.2f  %6.2f %4.2f  %5d  %17.2f -> %5.2f  %16d %5d  %10d  %11.2f  %5.1f  %s\n",
+      name.c_str(), demo.far_room.c_str(), r.smoke.extinction_at(demo.p_world_far_room), to_string(r.goal), r.time_s,
+      r.goal_error_m, r.pose_error_m, r.pose_sigma_m, r.bumps, r.before_median_m, r.after_median_m,
+      cells.occupied_clear, cells.occupied_smoke, cells.free, cells.wall_free_m, cpu_s, r.reason.c_str());
   for (const test::Bump& bump : r.bumped)
     std::printf("  bump after %.1f s at %.2f %.2f, heading %.2f (world)\n", bump.time_s, bump.T_world_robot.x(),
                 bump.T_world_robot.y(), bump.T_world_robot.heading());
@@ -306,10 +309,11 @@ void MissionTable::fly(const std::string& name, const DemoScenario& demo, test::
 void MissionTable::print_summary() const {
   std::printf(
       "of %d missions: reached %d (place true within 1 m), refused or given up %d, claimed wrongly %d, still waiting "
-      "%d, bumps %d; pose error %.2f m (worst %.2f), CPU %.1f s (worst %.1f), false wall cells %d, false free cells "
+      "%d, bumps %d; pose error %.2f m (worst %.2f; %d within 2 of the sigmas said), CPU %.1f s (worst %.1f), false "
+      "wall cells %d, false free cells "
       "%d, walls called free %.2f m\n",
       missions_, reached_, refused_, wrong_, waiting_, bumps_, median_of_all(pose_errors_m_),
-      pose_errors_m_.empty() ? 0 : *std::max_element(pose_errors_m_.begin(), pose_errors_m_.end()),
+      pose_errors_m_.empty() ? 0 : *std::max_element(pose_errors_m_.begin(), pose_errors_m_.end()), within_two_sigma_,
       median_of_all(cpu_s_), cpu_s_.empty() ? 0 : *std::max_element(cpu_s_.begin(), cpu_s_.end()), false_walls_,
       false_free_, wall_free_m_);
   for (const auto& [reason, count] : reasons_) std::printf("%4d  %s\n", count, reason.c_str());

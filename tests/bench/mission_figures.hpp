@@ -60,7 +60,7 @@ class MissionTable {
 
  private:
   MissionOptions options_;
-  int missions_ = 0, reached_ = 0, refused_ = 0, wrong_ = 0, waiting_ = 0, bumps_ = 0;
+  int missions_ = 0, reached_ = 0, refused_ = 0, wrong_ = 0, waiting_ = 0, bumps_ = 0, within_two_sigma_ = 0;
   int false_walls_ = 0, false_free_ = 0;
   double wall_free_m_ = 0;
   std::vector<double> pose_errors_m_, cpu_s_;

@@ -132,8 +132,11 @@ class Mission {
     r.bumps = robot_.drive().bumps();
     r.bumped = bumped_;
     const Pose2 T_map_true = demo_.T_world_start.inverse() * robot_.true_pose();
-    if (!snapshot.robots.empty())
-      r.pose_error_m = (snapshot.robots.front().T_map_robot.translation() - T_map_true.translation()).norm();
+    if (!snapshot.robots.empty()) {
+      const RobotStatus& said = snapshot.robots.front();
+      r.pose_error_m = (said.T_map_robot.translation() - T_map_true.translation()).norm();
+      r.pose_sigma_m = said.sigma_m;
+    }
     if (!snapshot.goals.empty()) {
       r.goal = snapshot.goals.front().goal.state;
       r.reason = snapshot.goals.front().goal.reason;

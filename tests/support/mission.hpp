@@ -40,6 +40,7 @@ struct MissionResult {
   int bumps = 0;
   std::vector<Bump> bumped;
   double pose_error_m = 0;  ///< of the robot on the map, at the end
+  double pose_sigma_m = 0;  ///< that it says to have there
   std::shared_ptr<const MergedMap> merged;
   std::shared_ptr<const OccupancyGrid> sensed;
   std::vector<Point2> way_world;  ///< where the robot truly was, twice a second
