@@ -31,6 +31,9 @@ cv::Mat with_cells_filled(const cv::Mat& darkness, const cv::Mat& ink);
 /// @param darkness CV_8UC1, 0 paper .. 255 black
 cv::Mat with_bands_filled(const cv::Mat& darkness, const std::vector<HatchedBand>& bands);
 
+/// Of the bands' length, what walls were read along: 0..1, 1 without bands.
+double share_read(const std::vector<HatchedBand>& bands, const std::vector<InkStroke>& walls);
+
 /// Drops dimension lines, their ticks and the lines that lead from them to the building. A dimension line is known by
 /// like oblique ticks that cross it, at both its ends at least (ISO 129).
 /// @param ink  CV_8UC1, 255 = ink

@@ -297,4 +297,14 @@ cv::Mat with_bands_filled(const cv::Mat& darkness, const std::vector<HatchedBand
   return filled;
 }
 
+double share_read(const std::vector<HatchedBand>& bands, const std::vector<InkStroke>& walls) {
+  double all = 0, read = 0;
+  for (const auto& band : bands) {
+    const auto along = [&](const InkStroke& s) { return distance(s.axis, band.axis.midpoint()) < band.thickness_px; };
+    all += band.axis.length();
+    if (std::any_of(walls.begin(), walls.end(), along)) read += band.axis.length();
+  }
+  return all > 0 ? read / all : 1;
+}
+
 }  // namespace smokemap

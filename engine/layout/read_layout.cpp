@@ -201,15 +201,8 @@ Choice choose_hatched(const cv::Mat& darkness, const std::vector<HatchedBand>& b
   Choice second{select_walls(strokes, filled.size(), params, least_px, at), first.covered, false};
   if (second.walls.walls.empty()) return first;
   second = without_blocks(strokes, filled, std::move(second), least_px, params, at);
-  double all = 0, read = 0;
-  for (const auto& band : bands) {
-    const Point2 middle = band.axis.midpoint();
-    all += band.axis.length();
-    if (std::any_of(second.walls.walls.begin(), second.walls.walls.end(),
-                    [&](const InkStroke& s) { return distance(s.axis, middle) < band.thickness_px; }))
-      read += band.axis.length();
-  }
-  second.fragment = second.walls.drawings.size() == 1 && read < kFragment * all;  // not one floor of several
+  second.fragment =  // not one floor of several
+      second.walls.drawings.size() == 1 && share_read(bands, second.walls.walls) < kFragment;
   return second;
 }
 

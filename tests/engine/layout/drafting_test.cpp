@@ -160,6 +160,21 @@ TEST(Hatching, FilledIsAsDarkAsTheDrawing) {
   EXPECT_EQ(cv::countNonZero(with_bands_filled(darkness, {}) != darkness), 0);
 }
 
+// Regression: of a photograph only the middle wall was found to be the plan, and nearly all of it was said to be sure.
+TEST(Hatching, SaysHowMuchOfItWasReadAsWalls) {
+  const std::vector<HatchedBand> bands{{{Point2(0, 0), Point2(300, 0)}, 20, 8, 30},
+                                       {{Point2(0, 0), Point2(0, 100)}, 20, 8, 9}};
+  InkStroke long_wall, thin_wall, elsewhere;
+  long_wall.axis = {Point2(-5, 4), Point2(310, -3)};
+  thin_wall.axis = {Point2(6, -10), Point2(6, 120)};
+  elsewhere.axis = {Point2(0, 200), Point2(300, 200)};
+  EXPECT_EQ(share_read(bands, {elsewhere}), 0);
+  EXPECT_EQ(share_read(bands, {elsewhere, long_wall}), 0.75);
+  EXPECT_EQ(share_read(bands, {thin_wall}), 0.25);
+  EXPECT_EQ(share_read(bands, {thin_wall, long_wall}), 1);
+  EXPECT_EQ(share_read({}, {elsewhere}), 1) << "nothing is hatched, nothing was missed";
+}
+
 TEST(Cells, AreFilledWhereLinesAreDenseAndNowhereElse) {
   cv::Mat darkness = cv::Mat::zeros(1000, 2200, CV_8UC1);
   for (int i = 0; i < 160; ++i)
