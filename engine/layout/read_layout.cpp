@@ -37,6 +37,7 @@ constexpr double kLeastBesideOutline = 1.6;  ///< times an outline's thickness: 
 
 constexpr double kWithoutRooms = 0.49;  ///< what is said of walls then: all are doubtful
 constexpr double kTrusted = 0.935;      ///< of well read plans the mean confidence is higher
+constexpr double kNoneSure = 0.89;      ///< the most that is said of a wall in others
 
 /// From pixels of the working picture to pixels of the layout.
 void rescale(LayoutMap& map, double scale) {
@@ -66,6 +67,13 @@ void doubt_lines_without_rooms(LayoutMap& map, bool fragment) {
   for (LayoutWall& wall : map.walls)
     if (!wall.by_person) wall.confidence *= kWithoutRooms;
   for (LayoutCorner& corner : map.corners) corner.confidence *= kWithoutRooms;
+}
+
+/// Of a drawing of which much is doubtful nothing is sure: of the lines of ruled paper, say, that do not look like it.
+void doubt_crowded_drawings(LayoutMap& map) {
+  if (mean_confidence(map) >= kTrusted) return;
+  for (LayoutWall& wall : map.walls)
+    if (!wall.by_person) wall.confidence = std::min(wall.confidence, kNoneSure);
 }
 
 void add_warnings(LayoutMap& map, bool bar) {
@@ -318,6 +326,7 @@ Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& 
   map.height_px = reading.rectified.rows;
   map.rooms_px = find_rooms(map);
   doubt_lines_without_rooms(map, choice.fragment);
+  doubt_crowded_drawings(map);
   ScaleEvidence evidence{door_widths(map), legible.bar_division_px, sheet_side(reading)};
   if (evidence.bar_division_px) *evidence.bar_division_px /= work.scale;
   map.scale =

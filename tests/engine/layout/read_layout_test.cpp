@@ -252,6 +252,27 @@ TEST(ReadLayout, NoiseGivesAnErrorOrWallsOfWhichItWarns) {
   }
 }
 
+// Regression: "much is doubtful, check every wall" stood beside 88 walls that were said to be sure, most of them lines
+// of the ruled paper.
+TEST(ReadLayout, IsSureOfNoWallWhereItSaysThatMuchIsDoubtful) {
+  std::mt19937_64 random(5);
+  cv::Mat crowded = testing::draw_office(0.75).picture;
+  for (int i = 0; i < 120; ++i) {
+    const cv::Point from(static_cast<int>(uniform(random, 0, crowded.cols)),
+                         static_cast<int>(uniform(random, 0, crowded.rows)));
+    const double heading = uniform(random, 0, kPi), length = uniform(random, 30, 80);
+    cv::line(
+        crowded, from,
+        from + cv::Point(static_cast<int>(length * std::cos(heading)), static_cast<int>(length * std::sin(heading))),
+        cv::Scalar(20, 20, 20), 6);
+  }
+  const auto reading = read_layout(crowded);
+  ASSERT_THAT(reading, test::IsOk());
+  const auto& said = reading->layout.warnings;
+  ASSERT_TRUE(std::any_of(said.begin(), said.end(), [](const auto& w) { return w.starts_with("Much of what was"); }));
+  for (const LayoutWall& wall : reading->layout.walls) EXPECT_LT(wall.confidence, 0.9);
+}
+
 TEST(ReadLayout, RefusesPicturesOverTheLimit) {
   LayoutParams params;
   params.max_megapixels = 0.5;
