@@ -136,7 +136,7 @@ Result<Ok> AutoCompleteGraph::Impl::work_out_sigmas(const SolveInput& last, cons
   if (!sigmas) return sigmas.error();
   l.sigma_m = std::move(sigmas->corners_m);
   l.robot_sigma_m.clear();
-  for (const auto& [robot, i] : newest) l.robot_sigma_m[robot] = sigmas->poses_m[l.robot_sigma_m.size()];
+  for (auto sigma = sigmas->poses_m.begin(); const auto& [robot, i] : newest) l.robot_sigma_m[robot] = *sigma++;
   for (const std::size_t axis : {0u, 1u}) {
     const std::vector<double> variance =
         doubted_variance(*plan, axis, l.beliefs[axis], seen_on_lines_m(*plan, axis, l.walls, l.linked_m));

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "layout/drawings.hpp"
+#include "layout/median.hpp"
 #include "layout/wall_strokes.hpp"
 
 namespace smokemap {
@@ -45,9 +47,7 @@ std::vector<InkStroke> without_dash_dot_lines(const std::vector<InkStroke>& stro
   for (std::size_t i = 0; i < strokes.size(); ++i)
     if (is_dot(strokes[i], strokes)) dashed[i] = true, thickness.push_back(strokes[i].thickness_px);
   if (thickness.size() < kFewestDots) return strokes;
-  std::nth_element(thickness.begin(), thickness.begin() + static_cast<std::ptrdiff_t>(thickness.size() / 2),
-                   thickness.end());
-  const double usual = thickness[thickness.size() / 2];
+  const double usual = median_of(std::move(thickness));
   // From the dots along the line: pieces as thick that begin within a gap of one that belongs to it.
   for (bool grown = true; grown;) {
     grown = false;

@@ -1,6 +1,8 @@
 #include "layout/doors.hpp"
 
-#include <algorithm>
+#include <utility>
+
+#include "layout/median.hpp"
 
 namespace smokemap {
 namespace {
@@ -18,9 +20,7 @@ std::vector<double> door_widths(const LayoutMap& map) {
 
 std::optional<double> usual_door_width(std::vector<double> widths) {
   if (widths.size() < kDoorsToKnow) return std::nullopt;
-  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-  std::nth_element(widths.begin(), middle, widths.end());
-  return *middle;
+  return median_of(std::move(widths));
 }
 
 }  // namespace smokemap

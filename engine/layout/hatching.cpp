@@ -5,9 +5,11 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <utility>
 
 #include "layout/drafting.hpp"
 #include "layout/drawings.hpp"
+#include "layout/median.hpp"
 
 namespace smokemap {
 namespace {
@@ -30,12 +32,6 @@ constexpr int kManyLines = 24;                           ///< of hatching, in a 
 constexpr double kLeastLength = 8;                       ///< times the thickest wall: less is furniture
 constexpr double kDense = 0.5;                           ///< of the band's width: paper between two lines
 constexpr double kLikeWidth = 1.3;                       ///< times as wide or narrow as a band that is known
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 struct FacePair {
   Segment2 axis;  ///< between them, where both run

@@ -9,6 +9,9 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <utility>
+
+#include "layout/median.hpp"
 
 namespace smokemap {
 namespace {
@@ -92,12 +95,6 @@ std::vector<EdgeSample> samples_behind(const Ink& ink, const Segment2& edge, con
   return samples;
 }
 
-double median(std::vector<double> values) {
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
-}
-
 /// Runs of samples of like width: one edge may belong to a wall and to the frame of the window that carries it on.
 std::vector<std::vector<EdgeSample>> runs_of_width(const std::vector<EdgeSample>& samples) {
   std::vector<std::vector<EdgeSample>> runs;
@@ -121,8 +118,8 @@ std::vector<Seed> seeds_behind(const Ink& ink, const Segment2& edge) {
   const auto seed_of = [&](const std::vector<EdgeSample>& of, double from, double to) {
     std::vector<double> widths, middles;
     for (const auto& sample : of) widths.push_back(sample.width), middles.push_back(sample.middle);
-    const double offset = median(middles);
-    return Seed{{edge.a + from * u + offset * n, edge.a + to * u + offset * n}, median(widths)};
+    const double offset = median_of(middles);
+    return Seed{{edge.a + from * u + offset * n, edge.a + to * u + offset * n}, median_of(widths)};
   };
   std::vector<Seed> seeds{seed_of(samples, 0, edge.length())};
   for (const auto& run : runs_of_width(samples)) {
@@ -248,11 +245,7 @@ void measure(const Ink& ink, InkStroke& stroke, double width) {
     sums.push_back(sum / peak);
   }
   stroke.thickness_px = width;
-  if (!sums.empty()) {
-    const auto nth = sums.begin() + static_cast<std::ptrdiff_t>(sums.size() / 2);
-    std::nth_element(sums.begin(), nth, sums.end());
-    stroke.thickness_px = *nth;
-  }
+  if (!sums.empty()) stroke.thickness_px = median_of(std::move(sums));
   stroke.darkness = samples ? dark / samples : 0;
 }
 

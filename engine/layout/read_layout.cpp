@@ -5,6 +5,7 @@
 #include <exception>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <utility>
 
 #include "grids/paper_view.hpp"
 #include "layout/clutter.hpp"
@@ -13,6 +14,7 @@
 #include "layout/drafting.hpp"
 #include "layout/gaps.hpp"
 #include "layout/ink_stroke.hpp"
+#include "layout/median.hpp"
 #include "layout/openings.hpp"
 #include "layout/rooms.hpp"
 #include "layout/scale.hpp"
@@ -186,10 +188,9 @@ double hollow_beside(const std::vector<HatchedBand>& bands, const WallStrokes& w
   std::vector<double> thickness;
   double hatched = 0, hollow = 0, thickest = 0;
   for (const auto& band : bands) thickness.push_back(band.thickness_px), hatched += band.axis.length();
-  const auto middle = thickness.begin() + static_cast<std::ptrdiff_t>(thickness.size() / 2);
-  std::nth_element(thickness.begin(), middle, thickness.end());
+  const double usual = median_of(std::move(thickness));
   for (const auto& s : walls.walls)
-    if (s.hollow && s.thickness_px < kThinnerThanHatched * *middle)
+    if (s.hollow && s.thickness_px < kThinnerThanHatched * usual)
       hollow += s.length(), thickest = std::max(thickest, s.thickness_px);
   return hollow > kManyThinner * hatched ? thickest : 0;
 }

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "geometry/angle.hpp"
 #include "layout/drafting.hpp"
+#include "layout/median.hpp"
 
 namespace smokemap {
 namespace {
@@ -129,13 +131,11 @@ class Ruling {
   std::vector<RulingLine> lines_;
 };
 
-double median_thickness(const std::vector<InkStroke>& strokes, const std::vector<std::size_t>& members,
-                        double InkStroke::*field) {
+double median_field(const std::vector<InkStroke>& strokes, const std::vector<std::size_t>& members,
+                    double InkStroke::*field) {
   std::vector<double> values;
   for (const std::size_t m : members) values.push_back(strokes[m].*field);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return median_of(std::move(values));
 }
 
 /// Headings of the longest strokes, each direction once.
@@ -159,8 +159,8 @@ std::vector<InkStroke> without_ruling(const std::vector<InkStroke>& strokes, cv:
   for (const double heading : long_headings(strokes, 0.1 * std::max(picture.width, picture.height))) {
     const auto members = Ruling(strokes, picture, heading).members();
     if (members.empty()) continue;
-    const double thickness = median_thickness(strokes, members, &InkStroke::thickness_px);
-    const double darkness = median_thickness(strokes, members, &InkStroke::darkness);
+    const double thickness = median_field(strokes, members, &InkStroke::thickness_px);
+    const double darkness = median_field(strokes, members, &InkStroke::darkness);
     for (const std::size_t m : members)
       ruled[m] = strokes[m].thickness_px < kHeavier * thickness && strokes[m].darkness < kHeavier * darkness;
   }

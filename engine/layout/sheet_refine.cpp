@@ -10,9 +10,11 @@
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "geometry/segment2.hpp"
+#include "layout/median.hpp"
 #include "layout/sheet.hpp"
 
 namespace smokemap {
@@ -137,10 +139,7 @@ std::optional<RimLine> fitted(const std::vector<RimPoint>& points, const RimLine
 double median_shift(const std::vector<RimPoint>& points, const RimLine& line) {
   std::vector<double> shifts;
   for (const auto& p : points) shifts.push_back(p.offset - line.at(p.along));
-  if (shifts.empty()) return 0;
-  const auto middle = shifts.begin() + static_cast<std::ptrdiff_t>(shifts.size() / 2);
-  std::nth_element(shifts.begin(), middle, shifts.end());
-  return *middle;
+  return shifts.empty() ? 0 : median_of(std::move(shifts));
 }
 
 /// The line that most samples have a point near.

@@ -68,7 +68,7 @@ struct MergedMap {
   Trajectory trajectory;              ///< corrected, one per pose node
   PlanFit fit;
   /// One standard deviation per coordinate of where each robot's newest node is, against the first node of all: what
-  /// drift left on the way there. Empty before the plan was laid.
+  /// drift left on the way there. Worked out anew every few updates, and kept between; empty before the plan was laid.
   std::map<std::string, double> robot_sigma_m;
 };
 
