@@ -13,6 +13,7 @@
 #include "robots/ros_convert.hpp"
 #include "robots/ros_names.hpp"
 #include "robots/ros_qos.hpp"
+#include "robots/topic_sources.hpp"
 #include "robots/topic_table.hpp"
 #include "robots/wait_thread.hpp"
 
@@ -132,22 +133,17 @@ class RobotGateway::Impl {
     DdsEntity reader;
   };
 
-  /// Who is listened to on a topic.
-  struct Source {
-    DdsGuid participant{};
-    Stamp last_heard = 0;
-  };
-
   /// Touched by the gateway's thread only.
   struct Robot {
     Robot(const std::string& id, Impl& gateway)
         : intake(id, gateway.params_, gateway.callbacks_,
-                 [&gateway, id](const std::string& what, const std::string& text) { gateway.raise(id, what, text); }) {}
+                 [&gateway, id](const std::string& what, const std::string& text) { gateway.raise(id, what, text); }),
+          sources(gateway.params_.link.stale_after_s) {}
     RobotIntake intake;
     RobotTopics told;                            ///< by discovery
     RobotTopics topics;                          ///< as used
     std::map<std::string, TopicReader> readers;  ///< by topic name
-    std::map<std::string, Source> sources;       ///< topic -> the one participant that is listened to
+    TopicSources sources;
     std::map<dds_instance_handle_t, DdsGuid> writer_participants;
   };
   /// What other threads may see and use, under the mutex.
@@ -257,7 +253,7 @@ class RobotGateway::Impl {
     robot.readers.emplace(topic, std::move(opened));
   }
 
-  /// Two sources on one topic are never mixed: the first is listened to as long as it says something.
+  /// Of two sources on one topic one is listened to (topic_sources.hpp).
   bool is_bound(Robot& robot, const std::string& topic, dds_entity_t reader, dds_instance_handle_t writer) {
     if (std::find(robot.topics.fixed_transforms.begin(), robot.topics.fixed_transforms.end(), topic) !=
         robot.topics.fixed_transforms.end())
@@ -272,15 +268,7 @@ class RobotGateway::Impl {
       }
       known = robot.writer_participants.emplace(writer, participant).first;
     }
-    const auto [source, is_new] = robot.sources.try_emplace(topic, Source{known->second, clock_->now()});
-    const bool is_silent = to_seconds(clock_->now() - source->second.last_heard) > params_.link.stale_after_s;
-    // The first is gone or silent: most likely this is the same robot, restarted.
-    if (source->second.participant != known->second && (is_silent || !table_.writes(source->second.participant, topic)))
-      source->second.participant = known->second;
-    if (source->second.participant == known->second) {
-      source->second.last_heard = clock_->now();
-      return true;
-    }
+    if (robot.sources.hears(topic, known->second, clock_->now(), table_)) return true;
     robot.intake.drop("second source of " + topic.substr(3));
     raise(robot.topics.robot, "sources:" + topic,
           "two sources publish " + topic.substr(3) + ": the second is left out (two robots with the same name?)");
