@@ -33,14 +33,19 @@ std::vector<cv::Point> by_falling_value(const cv::Mat& image) {
   double largest = 0;
   cv::minMaxLoc(image, nullptr, &largest);
   const auto bucket_of = [](float value) { return static_cast<size_t>(value * 16.0f); };
-  std::vector<std::vector<cv::Point>> buckets(bucket_of(static_cast<float>(largest)) + 1);
+  std::vector<size_t> place(bucket_of(static_cast<float>(largest)) + 1, 0);
+  for (int y = 0; y < image.rows; ++y)
+    for (const float* value = image.ptr<float>(y); value != image.ptr<float>(y) + image.cols; ++value)
+      if (*value > 0) ++place[bucket_of(*value)];
+  size_t count = 0;
+  for (auto bucket = place.rbegin(); bucket != place.rend(); ++bucket) {
+    count += *bucket;
+    *bucket = count - *bucket;  // where its first pixel goes
+  }
+  std::vector<cv::Point> order(count);
   for (int y = 0; y < image.rows; ++y)
     for (int x = 0; x < image.cols; ++x)
-      if (const float value = image.at<float>(y, x); value > 0) buckets[bucket_of(value)].emplace_back(x, y);
-  std::vector<cv::Point> order;
-  order.reserve(image.total());
-  for (auto bucket = buckets.rbegin(); bucket != buckets.rend(); ++bucket)
-    order.insert(order.end(), bucket->begin(), bucket->end());
+      if (const float value = image.ptr<float>(y)[x]; value > 0) order[place[bucket_of(value)]++] = {x, y};
   return order;
 }
 
@@ -177,15 +182,20 @@ void give_back_shallow(ZoneGraph& graph, double typical, const ConstrictionParam
   }
 }
 
-/// Up to, and without, straight borders. CV_32SC1, 0 = not free, ids from 1 without order.
-cv::Mat constriction_labels(const cv::Mat& structure, const ConstrictionParams& params) {
+/// Regions up to, and without, straight borders.
+struct RoughRegions {
+  cv::Mat labels;  ///< CV_32SC1, 0 = not free, ids from 1 without order
+  double typical_thickness_px = 0;
+};
+
+RoughRegions find_rough_regions(const cv::Mat& structure, const ConstrictionParams& params) {
   const cv::Mat clearance = clearance_image(structure);
   const cv::Mat thickness = local_thickness(clearance);
-  cv::Mat labels = peel(clearance, thickness, params);
-  ZoneGraph graph(labels, clearance);
-  give_back_shallow(graph, typical_thickness(thickness), params);
-  graph.relabel(labels);
-  return labels;
+  RoughRegions rough{peel(clearance, thickness, params), typical_thickness(thickness)};
+  ZoneGraph graph(rough.labels, clearance);
+  give_back_shallow(graph, rough.typical_thickness_px, params);
+  graph.relabel(rough.labels);
+  return rough;
 }
 
 }  // namespace
@@ -213,11 +223,11 @@ Result<Segmentation> segment_by_constrictions(const cv::Mat& free_space, const C
   if (const Result<Ok> valid = params.validate(); !valid) return valid.error();
   if (const Result<Ok> sound = check_free_space(free_space); !sound) return sound.error();
   const cv::Mat structure = structure_of(free_space, params.clutter_ratio).free_space;
-  cv::Mat labels = straighten_borders(constriction_labels(structure, params), structure);
+  const RoughRegions rough = find_rough_regions(structure, params);
+  cv::Mat labels = straighten_borders(rough.labels, structure);
   labels.setTo(0, free_space != 255);
   labels = connected_regions(labels);
-  const double typical = typical_thickness(local_thickness(clearance_image(structure)));
-  sweep_crumbs(labels, params.min_room_ratio * typical * typical);
+  sweep_crumbs(labels, params.min_room_ratio * rough.typical_thickness_px * rough.typical_thickness_px);
   return described(labels);
 }
 

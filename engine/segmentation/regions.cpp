@@ -99,16 +99,16 @@ std::vector<Contact> find_contacts(const cv::Mat& labels) {
   std::map<std::pair<int, int>, std::vector<cv::Point>> touching;
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x) {
-      const int own = labels.at<int>(y, x);
-      if (own == 0) continue;
-      for (const cv::Point n : {cv::Point(x + 1, y), cv::Point(x, y + 1)}) {
-        if (n.x >= labels.cols || n.y >= labels.rows) continue;
-        const int other = labels.at<int>(n);
-        if (other == 0 || other == own) continue;
-        std::vector<cv::Point>& pixels = touching[std::minmax(own, other)];
+      const int* here = labels.ptr<int>(y) + x;
+      if (*here == 0) continue;
+      const auto touch = [&](int other, const cv::Point& n) {
+        if (other == 0 || other == *here) return;
+        std::vector<cv::Point>& pixels = touching[std::minmax(*here, other)];
         pixels.emplace_back(x, y);
         pixels.push_back(n);
-      }
+      };
+      if (x + 1 < labels.cols) touch(here[1], {x + 1, y});
+      if (y + 1 < labels.rows) touch(labels.ptr<int>(y + 1)[x], {x, y + 1});
     }
   std::vector<Contact> contacts;
   for (auto& [pair, pixels] : touching) {
@@ -173,7 +173,9 @@ void sweep_crumbs(cv::Mat& labels, double least_area) {
   double last = 0;
   cv::minMaxLoc(labels, nullptr, &last);
   std::vector<double> areas(static_cast<size_t>(last) + 1, 0);
-  for (auto label = labels.begin<int>(); label != labels.end<int>(); ++label) areas[static_cast<size_t>(*label)] += 1;
+  for (int y = 0; y < labels.rows; ++y)
+    for (const int* label = labels.ptr<int>(y); label != labels.ptr<int>(y) + labels.cols; ++label)
+      areas[static_cast<size_t>(*label)] += 1;
   areas[0] = 0;
   const double limit = std::min(least_area, *std::max_element(areas.begin(), areas.end()));
   const auto is_crumb = [&](int label) { return label != 0 && areas[static_cast<size_t>(label)] < limit; };
@@ -181,18 +183,17 @@ void sweep_crumbs(cv::Mat& labels, double least_area) {
   cv::Mat to_room(labels.size(), CV_8UC1, cv::Scalar(255)), distance, nearest;
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x)
-      if (const int label = labels.at<int>(y, x); label != 0 && !is_crumb(label)) to_room.at<unsigned char>(y, x) = 0;
+      if (const int label = labels.ptr<int>(y)[x]; label != 0 && !is_crumb(label)) to_room.ptr(y)[x] = 0;
   cv::distanceTransform(to_room, distance, nearest, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
   std::vector<int> label_of(labels.total() + 1, 0);  // of the room pixel that the transform numbered so
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x)
-      if (to_room.at<unsigned char>(y, x) == 0)
-        label_of[static_cast<size_t>(nearest.at<int>(y, x))] = labels.at<int>(y, x);
+      if (to_room.ptr(y)[x] == 0) label_of[static_cast<size_t>(nearest.ptr<int>(y)[x])] = labels.ptr<int>(y)[x];
   std::map<int, std::map<int, int>> wish;
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x)
-      if (const int label = labels.at<int>(y, x); is_crumb(label))
-        ++wish[label][label_of[static_cast<size_t>(nearest.at<int>(y, x))]];
+      if (const int label = labels.ptr<int>(y)[x]; is_crumb(label))
+        ++wish[label][label_of[static_cast<size_t>(nearest.ptr<int>(y)[x])]];
   std::vector<int> joins(areas.size());
   std::iota(joins.begin(), joins.end(), 0);
   for (const auto& [crumb, votes] : wish)
@@ -200,8 +201,9 @@ void sweep_crumbs(cv::Mat& labels, double least_area) {
         std::max_element(votes.begin(), votes.end(), [](const auto& one, const auto& two) {
           return one.second < two.second;
         })->first;
-  for (auto label = labels.begin<int>(); label != labels.end<int>(); ++label)
-    *label = joins[static_cast<size_t>(*label)];
+  for (int y = 0; y < labels.rows; ++y)
+    for (int* label = labels.ptr<int>(y); label != labels.ptr<int>(y) + labels.cols; ++label)
+      *label = joins[static_cast<size_t>(*label)];
 }
 
 void label_rest(const cv::Mat& free_space, int next, cv::Mat& labels) {

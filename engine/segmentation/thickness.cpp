@@ -28,23 +28,27 @@ float value_or_zero(const cv::Mat& image, int x, int y) {
   return inside ? image.at<float>(y, x) : 0.0f;
 }
 
+float length_of(float x, float y) {
+  return static_cast<float>(std::sqrt(static_cast<double>(x) * x + static_cast<double>(y) * y));
+}
+
 /// A disc that lies inside that of a pixel farther up the slope of the clearance paints nothing new.
 bool covered_from_uphill(const cv::Mat& clearance, int x, int y) {
   const float own = clearance.at<float>(y, x);
   const float gx = value_or_zero(clearance, x + 1, y) - value_or_zero(clearance, x - 1, y);
   const float gy = value_or_zero(clearance, x, y + 1) - value_or_zero(clearance, x, y - 1);
-  const float slope = std::hypot(gx, gy);
+  const float slope = length_of(gx, gy);
   if (slope < 1e-3f) return false;
   for (int reach = 1; reach <= 4; ++reach) {
     const int dx = static_cast<int>(std::lround(static_cast<float>(reach) * gx / slope));
     const int dy = static_cast<int>(std::lround(static_cast<float>(reach) * gy / slope));
-    const float step = std::hypot(static_cast<float>(dx), static_cast<float>(dy));
+    const float step = length_of(static_cast<float>(dx), static_cast<float>(dy));
     if (value_or_zero(clearance, x + dx, y + dy) >= own + step - kCoverTolerance_px) return true;
   }
   return false;
 }
 
-std::vector<RidgePixel> ridge_by_rising_clearance(const cv::Mat& clearance) {
+std::vector<RidgePixel> ridge_by_falling_clearance(const cv::Mat& clearance) {
   std::vector<RidgePixel> ridge;
   for (int y = 0; y < clearance.rows; ++y)
     for (int x = 0; x < clearance.cols; ++x) {
@@ -52,33 +56,58 @@ std::vector<RidgePixel> ridge_by_rising_clearance(const cv::Mat& clearance) {
       if (own > 0 && !covered_from_uphill(clearance, x, y)) ridge.push_back({own, x, y});
     }
   std::stable_sort(ridge.begin(), ridge.end(),
-                   [](const RidgePixel& one, const RidgePixel& two) { return one.clearance < two.clearance; });
+                   [](const RidgePixel& one, const RidgePixel& two) { return one.clearance > two.clearance; });
   return ridge;
 }
 
-/// Fills the disc round `centre` with `value`.
-void paint_disc(cv::Mat& image, const cv::Point& centre, double radius, float value) {
-  const int reach = static_cast<int>(radius);
-  for (int dy = -reach; dy <= reach; ++dy) {
-    const int y = centre.y + dy;
-    if (y < 0 || y >= image.rows) continue;
-    const int half = static_cast<int>(std::sqrt(std::max(0.0, radius * radius - dy * dy)));
-    const int from = std::max(0, centre.x - half);
-    const int to = std::min(image.cols - 1, centre.x + half);
-    float* row = image.ptr<float>(y);
-    std::fill(row + from, row + to + 1, value);
+/// Paints discs under those that were painted before, touching every pixel but once: each knows where in its row the
+/// next bare one is. What is not free stays as it is.
+class UnderPainter {
+ public:
+  /// @param clearance  CV_32FC1; free is what is above zero
+  explicit UnderPainter(const cv::Mat& clearance) : next_(clearance.rows, clearance.cols + 1, CV_32SC1) {
+    for (int y = 0; y < next_.rows; ++y) {
+      int* next = next_.ptr<int>(y);
+      const auto* is_free = clearance.ptr<float>(y);
+      for (int x = 0; x < clearance.cols; ++x) next[x] = is_free[x] > 0 ? x : x + 1;
+      next[clearance.cols] = clearance.cols;
+    }
   }
-}
+
+  void paint(cv::Mat& image, const cv::Point& centre, double radius, float value) {
+    const int reach = static_cast<int>(radius);
+    for (int y = std::max(0, centre.y - reach); y <= std::min(image.rows - 1, centre.y + reach); ++y) {
+      const int dy = y - centre.y;
+      const int half = static_cast<int>(std::sqrt(std::max(0.0, radius * radius - dy * dy)));
+      const int to = std::min(image.cols - 1, centre.x + half);
+      int* next = next_.ptr<int>(y);
+      float* row = image.ptr<float>(y);
+      for (int x = bare_from(next, std::max(0, centre.x - half)); x <= to; x = bare_from(next, x + 1))
+        row[x] = value, next[x] = x + 1;
+    }
+  }
+
+ private:
+  static int bare_from(int* next, int x) {
+    while (next[x] != x) {
+      next[x] = next[next[x]];
+      x = next[x];
+    }
+    return x;
+  }
+
+  cv::Mat next_;  ///< CV_32SC1: the pixel itself where bare; one column more than the image
+};
 
 }  // namespace
 
 cv::Mat local_thickness(const cv::Mat& clearance) {
   cv::Mat thickness = clearance.clone();
-  // In rising order, so that larger discs paint over smaller ones. Half a pixel more makes up for the covered discs
-  // that were left out and cannot reach beyond a wall.
-  for (const RidgePixel& pixel : ridge_by_rising_clearance(clearance))
-    paint_disc(thickness, {pixel.x, pixel.y}, pixel.clearance + 0.5, pixel.clearance);
-  thickness.setTo(0, clearance <= 0);
+  // The largest disc first. Half a pixel more makes up for the covered discs that were left out and cannot reach beyond
+  // a wall.
+  UnderPainter painter(clearance);
+  for (const RidgePixel& pixel : ridge_by_falling_clearance(clearance))
+    painter.paint(thickness, {pixel.x, pixel.y}, pixel.clearance + 0.5, pixel.clearance);
   return thickness;
 }
 
@@ -95,9 +124,10 @@ cv::Mat fuzzy_opening(const cv::Mat& clearance) {
       centres[static_cast<size_t>(own)].emplace_back(x, y);
     }
   cv::Mat opening(clearance.size(), CV_32FC1, cv::Scalar(0));
-  for (size_t radius = 1; radius < centres.size(); ++radius)
+  UnderPainter painter(clearance);
+  for (size_t radius = centres.size(); radius-- > 1;)
     for (const cv::Point& centre : centres[radius])
-      paint_disc(opening, centre, static_cast<double>(radius) - 1, static_cast<float>(radius));
+      painter.paint(opening, centre, static_cast<double>(radius) - 1, static_cast<float>(radius));
   return opening;
 }
 
