@@ -100,41 +100,72 @@ std::vector<StraightCut> cuts_near(const cv::Mat& structure, const Contact& cont
   return distinct;
 }
 
+/// What a cut does to the two regions of a contact within a window of the labels.
+struct Parting {
+  cv::Rect window;
+  cv::Mat pieces;                   ///< CV_32SC1: pieces of both regions left by the cut, 0 = neither or the cut itself
+  std::vector<unsigned char> to_b;  ///< of each piece: the region that has more of it gets it all
+  int lost_a = 0, lost_b = 0;
+  bool is_parted = false;   ///< both regions keep something
+  bool is_cut_off = false;  ///< what changes hands goes on outside of the window
+};
+
+Parting part_within(const cv::Rect& window, const Contact& contact, const StraightCut& cut, const cv::Mat& labels) {
+  Parting parting;
+  parting.window = window;
+  const cv::Mat local = labels(window);
+  cv::Mat both = (local == contact.label_a) | (local == contact.label_b);
+  cv::line(both, cut.a - window.tl(), cut.b - window.tl(), cv::Scalar(0), 1, cv::LINE_8);
+  const int count = cv::connectedComponents(both, parting.pieces, 4, CV_32S);
+  std::vector<int> of_a(static_cast<size_t>(count), 0), of_b(static_cast<size_t>(count), 0);
+  for (int y = 0; y < local.rows; ++y)
+    for (int x = 0; x < local.cols; ++x)
+      if (const auto piece = static_cast<size_t>(parting.pieces.at<int>(y, x)); piece != 0)
+        ++(local.at<int>(y, x) == contact.label_a ? of_a : of_b)[piece];
+  parting.to_b.assign(static_cast<size_t>(count), 0);
+  int kept_a = 0, kept_b = 0;
+  for (size_t piece = 1; piece < of_a.size(); ++piece) {
+    const bool to_b = of_a[piece] < of_b[piece];
+    parting.to_b[piece] = to_b;
+    (to_b ? parting.lost_a : parting.lost_b) += std::min(of_a[piece], of_b[piece]);
+    (to_b ? kept_b : kept_a) += std::max(of_a[piece], of_b[piece]);
+  }
+  parting.is_parted = kept_a > 0 && kept_b > 0;
+  const auto changes_hands = [&](int x, int y) {
+    const auto piece = static_cast<size_t>(parting.pieces.at<int>(y, x));
+    return piece != 0 && (local.at<int>(y, x) == contact.label_b) != (parting.to_b[piece] != 0);
+  };
+  for (int y = 0; y < local.rows; ++y)
+    parting.is_cut_off |=
+        (window.x > 0 && changes_hands(0, y)) || (window.br().x < labels.cols && changes_hands(local.cols - 1, y));
+  for (int x = 0; x < local.cols; ++x)
+    parting.is_cut_off |=
+        (window.y > 0 && changes_hands(x, 0)) || (window.br().y < labels.rows && changes_hands(x, local.rows - 1));
+  return parting;
+}
+
 /// Gives what lies between a contact and its cut to the side of the cut on which it lies. Only a window around both is
-/// looked at. False, and nothing is done, where the cut does not part the two regions.
+/// looked at, a larger one where the window would end what changes hands. False, and nothing is done, where the cut
+/// does not part the two regions.
 bool apply_cut(const Contact& contact, const StraightCut& cut, const std::vector<int>& areas, cv::Mat& labels) {
   std::vector<cv::Point> corners = contact.pixels;
   corners.insert(corners.end(), {cut.a, cut.b});
-  cv::Rect window = cv::boundingRect(corners);
-  const int margin = std::max(window.width, window.height) + 2;
-  window = cv::Rect(window.x - margin, window.y - margin, window.width + 2 * margin, window.height + 2 * margin) &
-           cv::Rect(0, 0, labels.cols, labels.rows);
-  cv::Mat local = labels(window);
-  const cv::Mat both = (local == contact.label_a) | (local == contact.label_b);
-  cv::Mat parted = both.clone(), pieces;
-  cv::line(parted, cut.a - window.tl(), cut.b - window.tl(), cv::Scalar(0), 1, cv::LINE_8);
-  const int count = cv::connectedComponents(parted, pieces, 4, CV_32S);
-  std::vector<int> of_a(static_cast<size_t>(count), 0), of_b(static_cast<size_t>(count), 0);
-  for (int y = 0; y < local.rows; ++y)
-    for (int x = 0; x < local.cols; ++x) {
-      const auto piece = static_cast<size_t>(pieces.at<int>(y, x));
-      if (piece != 0) ++(local.at<int>(y, x) == contact.label_a ? of_a : of_b)[piece];
-    }
-  int lost_a = 0, lost_b = 0, kept_a = 0, kept_b = 0;
-  for (size_t piece = 1; piece < of_a.size(); ++piece) {
-    const bool goes_to_b = of_a[piece] < of_b[piece];
-    (goes_to_b ? lost_a : lost_b) += std::min(of_a[piece], of_b[piece]);
-    (goes_to_b ? kept_b : kept_a) += std::max(of_a[piece], of_b[piece]);
+  const cv::Rect core = cv::boundingRect(corners), whole(0, 0, labels.cols, labels.rows);
+  Parting parting;
+  for (int margin = std::max(core.width, core.height) + 2;; margin *= 2) {
+    const cv::Point reach(margin, margin);
+    parting = part_within(cv::Rect(core.tl() - reach, core.br() + reach) & whole, contact, cut, labels);
+    if (!parting.is_cut_off) break;
   }
   const auto area = [&](int label) { return areas[static_cast<size_t>(label)]; };
-  const bool is_parted = kept_a > 0 && kept_b > 0;
-  if (!is_parted || 2 * lost_a > area(contact.label_a) || 2 * lost_b > area(contact.label_b)) return false;
-  cv::Mat straight(local.size(), CV_32SC1, cv::Scalar(0));
+  if (!parting.is_parted || 2 * parting.lost_a > area(contact.label_a) || 2 * parting.lost_b > area(contact.label_b))
+    return false;
+  cv::Mat local = labels(parting.window), straight(local.size(), CV_32SC1, cv::Scalar(0));
   for (int y = 0; y < local.rows; ++y)
     for (int x = 0; x < local.cols; ++x)
-      if (const auto piece = static_cast<size_t>(pieces.at<int>(y, x)); piece != 0)
-        straight.at<int>(y, x) = of_a[piece] < of_b[piece] ? contact.label_b : contact.label_a;
-  grow_labels(both, straight);
+      if (const auto piece = static_cast<size_t>(parting.pieces.at<int>(y, x)); piece != 0)
+        straight.at<int>(y, x) = parting.to_b[piece] ? contact.label_b : contact.label_a;
+  grow_labels((local == contact.label_a) | (local == contact.label_b), straight);
   straight.copyTo(local, straight != 0);
   return true;
 }
