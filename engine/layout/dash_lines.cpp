@@ -41,12 +41,12 @@ bool is_dot(const InkStroke& s, const std::vector<InkStroke>& strokes) {
 
 }  // namespace
 
-std::vector<InkStroke> without_dash_dot_lines(const std::vector<InkStroke>& strokes) {
+std::vector<bool> in_dash_dot_lines(const std::vector<InkStroke>& strokes) {
   std::vector<bool> dashed(strokes.size(), false);
   std::vector<double> thickness;
   for (std::size_t i = 0; i < strokes.size(); ++i)
     if (is_dot(strokes[i], strokes)) dashed[i] = true, thickness.push_back(strokes[i].thickness_px);
-  if (thickness.size() < kFewestDots) return strokes;
+  if (thickness.size() < kFewestDots) return std::vector<bool>(strokes.size(), false);
   const double usual = median_of(std::move(thickness));
   // From the dots along the line: pieces as thick that begin within a gap of one that belongs to it.
   for (bool grown = true; grown;) {
@@ -58,6 +58,11 @@ std::vector<InkStroke> without_dash_dot_lines(const std::vector<InkStroke>& stro
         if (dashed[j] && gap_between(s.axis, strokes[j].axis) < 4 * usual) dashed[i] = grown = true;
     }
   }
+  return dashed;
+}
+
+std::vector<InkStroke> without_dash_dot_lines(const std::vector<InkStroke>& strokes) {
+  const auto dashed = in_dash_dot_lines(strokes);
   std::vector<InkStroke> kept;
   for (std::size_t i = 0; i < strokes.size(); ++i)
     if (!dashed[i]) kept.push_back(strokes[i]);

@@ -39,6 +39,11 @@ double share_read(const std::vector<HatchedBand>& bands, const std::vector<InkSt
 /// @param ink  CV_8UC1, 255 = ink
 std::vector<InkStroke> without_dimensions(const std::vector<InkStroke>& strokes, const cv::Mat& ink);
 
+/// Which strokes are leaves of doors, or lie on the arcs that their tips go along.
+/// @param ink     CV_8UC1, 255 = ink
+/// @param hidden  CV_8UC1, 255 where arrows and signs lie over the drawing
+std::vector<bool> door_leaves(const std::vector<InkStroke>& strokes, const cv::Mat& ink, const cv::Mat& hidden);
+
 /// Drops lines that the paper was ruled with: even distances, reaching over most of the picture. What is drawn over
 /// them more heavily stays.
 std::vector<InkStroke> without_ruling(const std::vector<InkStroke>& strokes, cv::Size picture);

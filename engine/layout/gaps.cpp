@@ -8,6 +8,28 @@ namespace smokemap {
 namespace {
 
 constexpr double kCarriesOn = 0.7;  ///< cosine of the turn between two walls of which one carries on the other
+constexpr double kStub = 4;         ///< times its thickness: where a shorter wall was joined may have turned it
+constexpr double kTurned = 0.45;    ///< rad, at most
+
+/// The way the wall would go on from an end. A stub goes on square to, or along, the longest wall that it was joined
+/// to.
+Point2 way_on(const LayoutMap& map, std::size_t wall, bool at_b) {
+  const Segment2 s = map.wall_px(static_cast<int>(wall));
+  const Point2 drawn = at_b ? s.direction() : Point2(-s.direction());
+  const LayoutWall& stub = map.walls[wall];
+  if (s.length() > kStub * stub.thickness_px) return drawn;
+  const int joined = at_b ? stub.corner_a : stub.corner_b;
+  Segment2 longest = s;
+  for (std::size_t j = 0; j < map.walls.size(); ++j) {
+    const Segment2 other = map.wall_px(static_cast<int>(j));
+    const bool meets = map.walls[j].corner_a == joined || map.walls[j].corner_b == joined;
+    if (j != wall && meets && other.length() > 2 * longest.length()) longest = other;
+  }
+  const Point2 u = longest.direction(), n = longest.normal();
+  for (const Point2& way : {u, Point2(-u), n, Point2(-n)})
+    if (way.dot(drawn) > std::cos(kTurned)) return way;
+  return drawn;
+}
 
 }  // namespace
 
@@ -17,9 +39,9 @@ std::vector<LooseEnd> loose_ends(const LayoutMap& map) {
     const Segment2 s = map.wall_px(static_cast<int>(w));
     if (s.length() < 1e-9) continue;
     if (map.corners[static_cast<std::size_t>(map.walls[w].corner_a)].degree == 1)
-      ends.push_back({map.walls[w].corner_a, static_cast<int>(w), s.a, -s.direction()});
+      ends.push_back({map.walls[w].corner_a, static_cast<int>(w), s.a, way_on(map, w, false)});
     if (map.corners[static_cast<std::size_t>(map.walls[w].corner_b)].degree == 1)
-      ends.push_back({map.walls[w].corner_b, static_cast<int>(w), s.b, s.direction()});
+      ends.push_back({map.walls[w].corner_b, static_cast<int>(w), s.b, way_on(map, w, true)});
   }
   return ends;
 }

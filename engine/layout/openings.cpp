@@ -1,12 +1,14 @@
 #include "layout/openings.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
 #include "layout/doors.hpp"
 #include "layout/edit.hpp"
 #include "layout/gaps.hpp"
+#include "layout/median.hpp"
 #include "layout/wall_graph.hpp"
 #include "layout/wall_strokes.hpp"
 
@@ -21,6 +23,8 @@ constexpr double kNarrowing = 1.3;     ///< times as wide as a passage are the s
 constexpr double kWiderDoor = 1.3;     ///< times the usual door
 constexpr double kWiderPassage = 1.8;  ///< times the usual door
 constexpr double kFramed = 0.8;        ///< of a wide gap must have a frame drawn along it
+constexpr double kLeastNib = 0.1;      ///< of a wall's thickness
+constexpr double kLeastNibPx = 1.5;
 
 /// Share of the gap along which thin lines run within a wall's width.
 /// @param side  -1 or 1: only those to that side of its middle; 0: all
@@ -64,13 +68,15 @@ int wall_near(const LayoutMap& map, const Point2& p, double reach_px, int except
   return nearest;
 }
 
-/// Thin lines that lead from a loose end aside to another wall: the front of a closet, a door between two stubs.
+/// Thin lines that lead from a loose end aside to another wall: the front of a closet, a door between two stubs. One to
+/// each side: a partition may part two closets.
 std::vector<Segment2> lines_from_ends(const LayoutMap& map, const std::vector<InkStroke>& thin, double thickness_px,
                                       double reach_px) {
   const double touch = 1.2 * thickness_px;
   const auto ends = loose_ends(map);
   std::vector<Segment2> lines;
-  for (const auto& end : ends)
+  for (const auto& end : ends) {
+    std::array<bool, 2> closed{};
     for (const auto& s : thin) {
       if (s.length() < 2 * thickness_px || s.length() > reach_px) continue;
       const bool from_a = (s.axis.a - end.p).norm() < (s.axis.b - end.p).norm();
@@ -82,11 +88,15 @@ std::vector<Segment2> lines_from_ends(const LayoutMap& map, const std::vector<In
       for (const auto& stub : ends)
         if (stub.wall == other && (stub.p - far).norm() < touch) line.b = stub.p;
       if (line_angle_between(line.heading(), s.axis.heading()) > radians(12)) continue;
+      const Point2 way = line.b - line.a;
+      const std::size_t side = end.outward.x() * way.y() - end.outward.y() * way.x() > 0;
+      if (closed[side]) continue;
+      closed[side] = true;
       const bool known =
           std::any_of(lines.begin(), lines.end(), [&](const Segment2& o) { return o.b == line.a && o.a == line.b; });
       if (!known) lines.push_back(line);
-      break;
     }
+  }
   return lines;
 }
 
@@ -95,14 +105,34 @@ bool starts_at(const std::vector<Segment2>& lines, const Point2& p) {
                      [&](const Segment2& s) { return (s.a - p).norm() < 1.5 || (s.b - p).norm() < 1.5; });
 }
 
-/// A window is a wall that people and most lasers do not get through. Of what is wider than windows are, one line may
-/// be a railing or a sliding door, two are a frame.
+/// How far it is from the place to the next wall or opening, at most the length of the way.
+double free_way(const LayoutMap& map, const Segment2& way) {
+  double free = way.length();
+  const auto stop = [&](const Segment2& line) {
+    if (const auto hit = intersection(way, line)) free = std::min(free, (*hit - way.a).norm());
+  };
+  for (std::size_t w = 0; w < map.walls.size(); ++w) stop(map.wall_px(static_cast<int>(w)));
+  for (const auto& o : map.openings) stop(o.gap_px);
+  return free;
+}
+
+/// Nothing of the plan lies to that side (-1 or 1) of the middle of the gap.
+bool faces_outside(const LayoutMap& map, const Segment2& gap, int side, double far_px) {
+  const Point2 away = side * gap.normal(), from = gap.midpoint() + away;
+  return free_way(map, {from, from + far_px * away}) >= far_px;
+}
+
+/// A window is a wall that people and most lasers do not get through. Of what is wider than windows are, two lines are
+/// a frame; one may be a sliding door, or the railing of a terrace if it runs along the outer face of the walls.
 void add_window(LayoutMap& map, const Gap& gap, const std::vector<InkStroke>& thin, double thickness_px,
                 double reach_px, double confidence) {
+  const std::array<bool, 2> lined{lined_share(gap.segment, thin, thickness_px, -1) > kFramed,
+                                  lined_share(gap.segment, thin, thickness_px, 1) > kFramed};
+  const bool wide = gap.segment.length() >= reach_px, framed = lined[0] && lined[1];
+  for (const int side : {-1, 1})
+    if (wide && !framed && lined[side > 0] && faces_outside(map, gap.segment, side, 5 * gap.segment.length())) return;
   map.openings.push_back({gap.segment, OpeningKind::kWindow, confidence});
-  const bool framed = lined_share(gap.segment, thin, thickness_px, -1) > kFramed &&
-                      lined_share(gap.segment, thin, thickness_px, 1) > kFramed;
-  if (framed || gap.segment.length() < reach_px) carry_on(map, gap, thickness_px, confidence);
+  if (framed || !wide) carry_on(map, gap, thickness_px, confidence);
 }
 
 /// Two thin lines as far apart as a wall is thick, from wall to wall: glass.
@@ -124,17 +154,6 @@ void add_glazing(LayoutMap& map, const std::vector<InkStroke>& thin, double thic
                             OpeningKind::kWindow,
                             0.6});
   }
-}
-
-/// How far it is from the place to the next wall or opening, at most the length of the way.
-double free_way(const LayoutMap& map, const Segment2& way) {
-  double free = way.length();
-  const auto stop = [&](const Segment2& line) {
-    if (const auto hit = intersection(way, line)) free = std::min(free, (*hit - way.a).norm());
-  };
-  for (std::size_t w = 0; w < map.walls.size(); ++w) stop(map.wall_px(static_cast<int>(w)));
-  for (const auto& o : map.openings) stop(o.gap_px);
-  return free;
 }
 
 /// How wide the space is along the gap a little way off to one side (-1 or 1); at most `reach_px` each way.
@@ -160,11 +179,50 @@ bool has_opening(const LayoutMap& map, const Segment2& gap, double thickness_px)
   });
 }
 
-/// Openings between walls whose ends meet other walls, as at the corner of a hall: where a leaf stands, and where two
-/// such ends face each other across a mouth.
+/// How far the ink reaches from the place the way given, at most `far_px`; 0 where there is none.
+double ink_ahead(const cv::Mat& ink, const Point2& p, const Point2& way, double far_px) {
+  double reach = 0;
+  for (; reach < far_px; reach += 0.5) {
+    const Point2 at = p + reach * way;
+    const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
+    if (x < 0 || y < 0 || x >= ink.cols || y >= ink.rows || ink.at<uchar>(y, x) == 0) break;
+  }
+  return reach;
+}
+
+/// The wall across the end of a gap stands out into it there, however little: a nib. Walls that carry on or end at a
+/// corner do not.
+bool has_nib(const cv::Mat& ink, const Point2& foot, const Point2& into, double thickness_px) {
+  const double far = 2 * thickness_px;
+  const Point2 along(-into.y(), into.x());
+  const auto face = [&](double from, double to) {
+    std::vector<double> reaches;
+    for (double o = from; o <= to; o += 0.2 * thickness_px)
+      reaches.push_back(ink_ahead(ink, foot + o * along, into, far));
+    return median_of(std::move(reaches));
+  };
+  const double nib = face(-0.2 * thickness_px, 0.21 * thickness_px);
+  const double beside[] = {face(-2.4 * thickness_px, -1.4 * thickness_px),
+                           face(1.4 * thickness_px, 2.4 * thickness_px)};
+  bool wall_beside = false;
+  for (const double wall : beside)
+    if (wall > 0) {
+      wall_beside = true;
+      if (nib < wall + std::max(kLeastNibPx, kLeastNib * thickness_px) || nib >= far) return false;
+    }
+  return wall_beside;
+}
+
+bool between_nibs(const cv::Mat& ink, const Segment2& gap, double thickness_px) {
+  return !ink.empty() && has_nib(ink, gap.a, gap.direction(), thickness_px) &&
+         has_nib(ink, gap.b, -gap.direction(), thickness_px);
+}
+
+/// Openings between walls whose ends meet other walls, as at the corner of a hall: where a leaf stands, where two such
+/// ends face each other across a mouth, and between nibs.
 /// @param aside  lines that close loose ends already
 void add_openings_at_corners(LayoutMap& map, const std::vector<InkStroke>& thin, const std::vector<Segment2>& aside,
-                             double thickness_px, double reach_px) {
+                             const cv::Mat& ink, double thickness_px, double reach_px) {
   const auto door = usual_door_width(door_widths(map));
   const double widest_door = door ? std::min(reach_px, kWiderDoor * *door + thickness_px) : reach_px;
   const double widest = door ? std::min(reach_px, kWiderPassage * *door + thickness_px) : reach_px;
@@ -178,7 +236,7 @@ void add_openings_at_corners(LayoutMap& map, const std::vector<InkStroke>& thin,
     const bool mouth = is_mouth(map, gap.segment);
     if (width < widest_door && (mouth || gap.corner_b >= 0) && has_leaf(gap.segment, thin, thickness_px))
       map.openings.push_back({gap.segment, OpeningKind::kDoor, 0.6});
-    else if (width < widest && gap.corner_b >= 0 && mouth)
+    else if (width < widest && ((gap.corner_b >= 0 && mouth) || between_nibs(ink, gap.segment, thickness_px)))
       map.openings.push_back({gap.segment, OpeningKind::kPassage, 0.4});
   }
 }
@@ -186,7 +244,7 @@ void add_openings_at_corners(LayoutMap& map, const std::vector<InkStroke>& thin,
 }  // namespace
 
 void close_gaps(LayoutMap& map, const std::vector<InkStroke>& thin, const cv::Mat& covered, double thickness_px,
-                const LayoutParams& params) {
+                const LayoutParams& params, const cv::Mat& ink) {
   double low_x = 1e300, high_x = -1e300, low_y = 1e300, high_y = -1e300;
   for (const auto& c : map.corners) {
     low_x = std::min(low_x, c.p_px.x()), high_x = std::max(high_x, c.p_px.x());
@@ -213,7 +271,7 @@ void close_gaps(LayoutMap& map, const std::vector<InkStroke>& thin, const cv::Ma
   }
   for (const auto& gap : gaps_ahead(map, joined_ends(map), thickness_px, widest))
     if (lined_share(gap.segment, lines, thickness_px) > kFramed) add_window(map, gap, lines, thickness_px, reach, 0.6);
-  add_openings_at_corners(map, thin, aside, thickness_px, reach);
+  add_openings_at_corners(map, thin, aside, ink, thickness_px, reach);
   for (const auto& line : aside)
     map.openings.push_back(
         {line, has_leaf(line, thin, thickness_px) ? OpeningKind::kDoor : OpeningKind::kPassage, 0.6});

@@ -308,6 +308,15 @@ WallStrokes walls_of_classes(const std::vector<InkStroke>& candidates, const Thi
   return out;
 }
 
+std::vector<InkStroke> could_be_walls(const std::vector<InkStroke>& strokes, double side_px,
+                                      const LayoutParams& params) {
+  std::vector<InkStroke> candidates;
+  for (const auto& s : strokes)
+    if (s.length() >= 0.6 * params.min_wall_share * side_px && s.length() >= 0.7 * s.thickness_px)
+      candidates.push_back(s);
+  return candidates;
+}
+
 double chosen_area(const WallStrokes& walls) {
   double area = 0;
   for (const auto& d : walls.drawings)
@@ -355,14 +364,21 @@ std::vector<InkStroke> within_drawing(const std::vector<InkStroke>& strokes, con
 
 }  // namespace
 
+std::vector<InkStroke> dash_dot_lines(const std::vector<InkStroke>& strokes, cv::Size picture,
+                                      const LayoutParams& params) {
+  const auto candidates = could_be_walls(strokes, std::max(picture.width, picture.height), params);
+  const auto dashed = in_dash_dot_lines(candidates);
+  std::vector<InkStroke> found;
+  for (std::size_t i = 0; i < dashed.size(); ++i)
+    if (dashed[i]) found.push_back(candidates[i]);
+  return found;
+}
+
 WallStrokes select_walls(const std::vector<InkStroke>& strokes, cv::Size picture, const LayoutParams& params,
                          double least_px, const std::optional<Point2>& at) {
   const double side = std::max(picture.width, picture.height);
   const double bridge = 0.02 * side;
-  std::vector<InkStroke> candidates;
-  for (const auto& s : strokes)
-    if (s.length() >= 0.6 * params.min_wall_share * side && s.length() >= 0.7 * s.thickness_px) candidates.push_back(s);
-  candidates = without_dash_dot_lines(candidates);
+  auto candidates = without_dash_dot_lines(could_be_walls(strokes, side, params));
   straighten_thickness(candidates);
   const auto regions = connected_regions(candidates, bridge, side);
   if (regions.empty()) return {};

@@ -46,6 +46,12 @@ std::vector<InkStroke> without_discs(const std::vector<InkStroke>& strokes, doub
 /// same gap on both sides, and what carries them on. Everything is kept unless there are at least five dots.
 std::vector<InkStroke> without_dash_dot_lines(const std::vector<InkStroke>& strokes);
 
+/// Which strokes that drops.
+std::vector<bool> in_dash_dot_lines(const std::vector<InkStroke>& strokes);
+/// Those of a picture.
+std::vector<InkStroke> dash_dot_lines(const std::vector<InkStroke>& strokes, cv::Size picture,
+                                      const LayoutParams& params);
+
 /// Strokes on one line, overlapping or less than `gap_px` apart, become one.
 std::vector<InkStroke> merge_collinear(std::vector<InkStroke> strokes, double angle_deg, double gap_px);
 

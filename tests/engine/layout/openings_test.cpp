@@ -103,6 +103,79 @@ TEST(Openings, AClosetIsShutAlongItsFront) {
   EXPECT_EQ(static_cast<int>(map.openings.size()), 1);
 }
 
+// Regression: beside a closet that was shut a shower stayed open: of two lines from one end only one was taken.
+TEST(Openings, APartitionPartsTwoClosets) {
+  auto walls = room_open_above(500, 500);
+  for (const double x : {400.0, 500.0, 600.0}) walls.push_back(line_of(x, 0, x, 100, kWallPx));
+  const auto map = closed(walls, {line_of(405, 99, 495, 99), line_of(505, 99, 595, 99)});
+  EXPECT_EQ(find_rooms(map).size(), 3U);
+}
+
+// Regression: a stub that was joined askew to a thick wall looked for its partner across the room.
+TEST(LooseEnds, OfStubsGoOnSquareToTheWallThatTheyWereJoinedTo) {
+  const auto map =
+      build_wall_graph({line_of(0, 0, 600, 0, kWallPx), line_of(300, 5, 306, 32, kWallPx)}, kWallPx, LayoutParams{});
+  for (const auto& end : loose_ends(map)) {
+    if (end.p.y() < 20) continue;
+    EXPECT_NEAR(end.outward.x(), 0, 1e-6);
+    EXPECT_NEAR(end.outward.y(), 1, 1e-6);
+  }
+  const auto slanting =
+      build_wall_graph({line_of(0, 0, 600, 0, kWallPx), line_of(300, 5, 340, 105, kWallPx)}, kWallPx, LayoutParams{});
+  for (const auto& end : loose_ends(slanting)) {
+    if (end.p.y() > 20) {
+      EXPECT_GT(end.outward.x(), 0.3) << "a wall as long as that knows its direction";
+    }
+  }
+}
+
+/// A room of 1000 x 600 with a hall of `width` below its upper wall, open to the right, drawn as ink; walls stand out
+/// by `nib` on both sides of the mouth.
+LayoutMap hall_with_nibs(double width, double nib_above, double nib_below) {
+  const std::vector<InkStroke> walls{line_of(0, 0, 1000, 0, kWallPx),        line_of(0, 0, 0, 600, kWallPx),
+                                     line_of(1000, 0, 1000, 600, kWallPx),   line_of(0, 600, 1000, 600, kWallPx),
+                                     line_of(0, width, 500, width, kWallPx), line_of(500, width, 500, 600, kWallPx)};
+  const Point2 shift(20, 20);
+  cv::Mat ink = cv::Mat::zeros(700, 1100, CV_8UC1);
+  auto shifted = walls;
+  for (auto& s : shifted) {
+    s.axis = {s.axis.a + shift, s.axis.b + shift};
+    cv::line(ink, testing::detail::px(s.axis.a), testing::detail::px(s.axis.b), cv::Scalar(255),
+             static_cast<int>(kWallPx));
+  }
+  const auto nib = [&](double y1, double y2) {
+    cv::rectangle(ink, testing::detail::px(Point2(495, y1) + shift), testing::detail::px(Point2(505, y2) + shift),
+                  cv::Scalar(255), cv::FILLED);
+  };
+  nib(0, 5 + nib_above), nib(width - 5 - nib_below, width);
+  LayoutMap map = build_wall_graph(shifted, kWallPx, LayoutParams{});
+  close_gaps(map, {}, cv::Mat::zeros(ink.size(), CV_8UC1), kWallPx, LayoutParams{}, ink);
+  return map;
+}
+
+// Regression: a corridor was one with the room at its end, whose walls stand out on both sides of the mouth.
+TEST(Openings, WallsThatStandOutOnBothSidesMakeAPassage) {
+  const auto map = hall_with_nibs(60, 3, 3);
+  ASSERT_EQ(map.openings.size(), 1U);
+  EXPECT_EQ(map.openings[0].kind, OpeningKind::kPassage);
+  EXPECT_LE(map.openings[0].confidence, 0.4);
+  EXPECT_EQ(find_rooms(map).size(), 3U);
+}
+
+TEST(Openings, NibsMustStandOnBothSides) {
+  EXPECT_TRUE(hall_with_nibs(60, 0, 0).openings.empty());
+  EXPECT_TRUE(hall_with_nibs(60, 3, 0).openings.empty());
+  EXPECT_TRUE(hall_with_nibs(60, 0, 3).openings.empty());
+}
+
+// Regression: a terrace behind a railing was a room.
+TEST(Openings, OneLineAlongTheOuterFaceIsARailing) {
+  const auto walls = room_open_above(380, 640);
+  EXPECT_TRUE(closed(walls, {line_of(380, -4.5, 640, -4.5)}).openings.empty()) << "outside is above";
+  EXPECT_EQ(closed(walls, {line_of(380, 4.5, 640, 4.5)}).openings.size(), 1U) << "along the inner face";
+  EXPECT_EQ(closed(walls, {line_of(380, 0, 640, 0)}).openings.size(), 1U) << "glass";
+}
+
 /// A flat of 1000 x 600: a hall below, `from`..`to` open towards what lies above, where both sides of the opening end
 /// in corners, so that no end is loose.
 std::vector<InkStroke> flat_with_hall(double from, double to, double hall_width) {

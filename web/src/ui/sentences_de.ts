@@ -79,6 +79,8 @@ export const sentencesDe: Readonly<Record<string, string>> = {
   'The picture file is cut off: its lower part is missing.': 'Die Bilddatei ist abgeschnitten: ihr unterer Teil fehlt.',
   'The sheet shows {n} drawings that could be the plan: choose the floor.': 'Das Blatt zeigt {n} Zeichnungen, die der Plan sein könnten: bitte das Geschoss wählen.',
   'Few walls were found: check the plan against the picture.': 'Es wurden wenige Wände gefunden: den Plan am Bild prüfen.',
+  'The lines cross one another as in no building: this may be no plan. Check every wall.': 'Die Linien kreuzen sich wie in keinem Gebäude: vielleicht ist das kein Plan. Jede Wand prüfen.',
+  'Only a part of the drawing was understood: walls and rooms are missing. Check every wall.': 'Nur ein Teil der Zeichnung ist verstanden: Wände und Räume fehlen. Jede Wand prüfen.',
   'Much of what was read is doubtful: the drawing is crowded or hard to see. Check every wall.': 'Vieles Gelesene ist zweifelhaft: die Zeichnung ist überladen oder schlecht zu sehen. Jede Wand prüfen.',
   'No closed room was found: walls may be missing.': 'Kein geschlossener Raum gefunden: es können Wände fehlen.',
   'The plan is small in the picture: thin walls may be missing.': 'Der Plan ist klein im Bild: dünne Wände können fehlen.',
