@@ -209,6 +209,7 @@ Result<Ok> ConstrictionParams::validate() const {
       .in_range("open_ratio", open_ratio, 0.1, 10)
       .in_range("min_room_ratio", min_room_ratio, 0, 100)
       .in_range("min_clearance_px", min_clearance_px, 0, 1000)
+      .in_range("crumb_ratio", crumb_ratio, 0, 1)
       .in_range("clutter_ratio", clutter_ratio, 0, 10)
       .result();
 }
@@ -216,6 +217,7 @@ Result<Ok> ConstrictionParams::validate() const {
 ConstrictionParams matching_segmentation_params() {
   ConstrictionParams params;
   params.min_room_ratio = 0.05;
+  params.crumb_ratio = 0.01;
   return params;
 }
 
@@ -227,7 +229,10 @@ Result<Segmentation> segment_by_constrictions(const cv::Mat& free_space, const C
   cv::Mat labels = straighten_borders(rough.labels, structure);
   labels.setTo(0, free_space != 255);
   labels = connected_regions(labels);
-  sweep_crumbs(labels, params.min_room_ratio * rough.typical_thickness_px * rough.typical_thickness_px);
+  double regions = 0;
+  cv::minMaxLoc(labels, nullptr, &regions);
+  const double least_room = params.min_room_ratio * rough.typical_thickness_px * rough.typical_thickness_px;
+  sweep_crumbs(labels, std::max(least_room, params.crumb_ratio * cv::countNonZero(labels) / regions));
   return described(labels);
 }
 

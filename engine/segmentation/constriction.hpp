@@ -16,13 +16,15 @@ struct ConstrictionParams {
   double open_ratio = 0.85;       ///< an opening at least this share as wide as the room is no boundary
   double min_room_ratio = 0.50;   ///< smallest room, in squares of the usual clearance
   double min_clearance_px = 1.5;  ///< free space narrower than this has no room of its own
+  double crumb_ratio = 0;         ///< a region smaller than this share of the mean one joins the nearest
   double clutter_ratio = 1.0;     ///< islands smaller than this many typical clearances are furniture
 
   Result<Ok> validate() const;
 };
 
 /// The parameters for maps that are to be matched, the same for both: small rooms stay, because people draw them and
-/// matching tells them apart by what lies around them.
+/// matching tells them apart by what lies around them. Crumbs do not: robots see dents in walls and gaps behind doors
+/// that no two maps share, and each would count as a neighbour of its room like the corridor does.
 ConstrictionParams matching_segmentation_params();
 
 /// Splits free space where it grows narrow. The regions that matching was made on and measured with.

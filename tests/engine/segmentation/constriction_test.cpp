@@ -51,6 +51,20 @@ TEST(Constrictions, KeepSmallRoomsWhereMapsAreToBeMatched) {
   EXPECT_EQ(segment_by_constrictions(map, matching_segmentation_params())->regions.size(), 3u);
 }
 
+TEST(Constrictions, CountNoDentInAWallAsARoomWhereMapsAreToBeMatched) {
+  cv::Mat map(200, 440, CV_8UC1, cv::Scalar(0));
+  const cv::Rect hall(20, 40, 150, 100), corridor(20, 144, 400, 12), door(80, 140, 8, 4);
+  const cv::Rect crack(50, 36, 2, 4), dent(47, 30, 8, 6);
+  for (const cv::Rect& part : {hall, corridor, door, crack, dent}) map(part).setTo(255);
+  ConstrictionParams keeping = matching_segmentation_params();
+  keeping.crumb_ratio = 0;
+  EXPECT_EQ(segment_by_constrictions(map, keeping)->regions.size(), 3u);
+  const auto found = segment_by_constrictions(map, matching_segmentation_params());
+  ASSERT_EQ(found->regions.size(), 2u);
+  EXPECT_EQ(found->labels.at<std::uint16_t>(32, 50), found->labels.at<std::uint16_t>(90, 90));
+  EXPECT_EQ(cv::countNonZero((map == 255) != (found->labels > 0)), 0);
+}
+
 TEST(Constrictions, RefuseWhatCannotBeSplit) {
   EXPECT_THAT(segment_by_constrictions({}), test::Fails(Errc::kInvalidArgument));
   EXPECT_THAT(segment_by_constrictions(cv::Mat(9, 9, CV_8UC1, cv::Scalar(0))), test::Fails(Errc::kDegenerate));
