@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "layout/drafting.hpp"
+#include "layout/gaps.hpp"
 
 namespace smokemap {
 namespace {
@@ -19,6 +20,7 @@ constexpr double kOtherDiagonal = 0.5;    ///< of a tick's reach may be inked ac
 constexpr double kLikeTick = 1.6;         ///< times longer or shorter
 constexpr double kOnLine = 0.06;          ///< rad, between a line and the way to its next tick
 constexpr double kSlip = 0.3;             ///< times a tick's length: a gap in the line
+constexpr double kHiddenGap = 0.6;        ///< of a gap, below arrows and signs
 constexpr double kOvershoot = 1.2;        ///< times a tick's length: how far dimension lines run on beyond one
 constexpr double kLeadOvershoot = 0.8;    ///< the same for lines that lead to the building
 constexpr double kLikeLine = 1.5;         ///< times as thick as the dimension line may be what leads to it
@@ -99,8 +101,8 @@ std::vector<Tick> find_ticks(const std::vector<InkStroke>& strokes, const cv::Ma
 
 class DimensionLines {
  public:
-  DimensionLines(const std::vector<InkStroke>& strokes, const cv::Mat& ink)
-      : strokes_(strokes), ink_(ink), drop_(strokes.size(), false) {
+  DimensionLines(const std::vector<InkStroke>& strokes, const cv::Mat& ink, const cv::Mat& hidden)
+      : strokes_(strokes), ink_(ink), hidden_(hidden), drop_(strokes.size(), false) {
     const auto ticks = find_ticks(strokes, ink);
     for (std::size_t a = 0; a < ticks.size(); ++a)
       for (std::size_t b = a + 1; b < ticks.size(); ++b)
@@ -147,7 +149,7 @@ class DimensionLines {
     const double gap = slip_px / way.length();
     double from = 0, until = -1e300;
     for (const auto& [low, high] : pieces) {
-      if (low > until + gap) {
+      if (low > until + gap && !(until > -1e200 && is_hidden(way, until, low))) {
         if (until > 1) break;
         from = low;
       }
@@ -155,6 +157,12 @@ class DimensionLines {
     }
     if (from > gap || until < 1 - gap) return std::nullopt;
     return std::pair{from, until};
+  }
+
+  /// An arrow or a sign lies over that part of the way.
+  bool is_hidden(const Segment2& way, double from, double to) const {
+    const Point2 d = way.b - way.a;
+    return !hidden_.empty() && covered_share({way.a + from * d, way.a + to * d}, hidden_) > kHiddenGap;
   }
 
   /// Walls that dimension lines end at run on beyond their ticks.
@@ -199,15 +207,16 @@ class DimensionLines {
   }
 
   const std::vector<InkStroke>& strokes_;
-  const cv::Mat& ink_;
+  const cv::Mat &ink_, &hidden_;
   std::vector<bool> drop_;
   std::vector<Tick> ticks_;
 };
 
 }  // namespace
 
-std::vector<InkStroke> without_dimensions(const std::vector<InkStroke>& strokes, const cv::Mat& ink) {
-  const DimensionLines dimensions(strokes, ink);
+std::vector<InkStroke> without_dimensions(const std::vector<InkStroke>& strokes, const cv::Mat& ink,
+                                          const cv::Mat& hidden) {
+  const DimensionLines dimensions(strokes, ink, hidden);
   std::vector<InkStroke> kept;
   for (std::size_t i = 0; i < strokes.size(); ++i)
     if (!dimensions.holds(i)) kept.push_back(strokes[i]);

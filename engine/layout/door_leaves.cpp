@@ -19,8 +19,9 @@ constexpr double kDeepestHinge = 0.35;  ///< of the leaf's length: how far the h
 constexpr double kMostSquashed = 0.24;  ///< of the radius
 constexpr double kFrom = 0.2, kTo = 1.3, kStep = 0.05;  ///< rad from the leaf: where the arc must be drawn
 constexpr int kMostMissing = 4;                         ///< of those places
-constexpr int kLeastSeen = 13;                          ///< of those places: arrows and signs may lie over the others
+constexpr int kLeastSeen = 9;                           ///< of those places: arrows and signs may lie over the others
 constexpr int kSeenForOneMissing = 5;
+constexpr double kWidestArc = 0.12;    ///< of its radius
 constexpr double kThickerThanArc = 2;  ///< times: that is a stub of a wall beside a door
 constexpr double kOffArcPx = 3.5;
 
@@ -62,7 +63,9 @@ class ArcFinder {
             if (const int missed = missing(arc, band, least); missed < least) least = missed, best = arc;
           }
       }
-    if (best && thickness_px > kThickerThanArc * width(*best) + 1) return std::nullopt;
+    if (!best) return std::nullopt;
+    const double arc_px = width(*best);
+    if (thickness_px > kThickerThanArc * arc_px + 1 || arc_px > kWidestArc * best->leaf.norm()) return std::nullopt;
     return best;
   }
 

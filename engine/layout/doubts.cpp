@@ -15,6 +15,7 @@ constexpr double kWithoutRooms = 0.49;     ///< what is said of walls then: all 
 constexpr double kTrusted = 0.935;         ///< of well read plans the mean confidence is higher
 constexpr double kNoneSure = 0.89;         ///< the most that is said of a wall in others
 constexpr double kLongLine = 0.05;         ///< of the plan's extent: shorter ones are furniture, letters, leaves
+constexpr double kFrame = 0.8;             ///< of the plan's extent
 constexpr double kMuchUnread = 0.45;       ///< of the walls' length: of well read plans it is under 0.33
 constexpr double kFewBorder = 0.6;         ///< of the walls' length bounds a room; of well read plans over 0.62
 constexpr double kTangled = 0.4;           ///< of the meetings of walls; of plans it is under 0.1
@@ -54,6 +55,15 @@ bool is_read(const LayoutMap& map, const InkStroke& line, const Point2& p, doubl
                      [&](const LayoutOpening& o) { return distance(o.gap_px, p) < 0.02 * extent_px; });
 }
 
+/// Nearly as long as the whole drawing and clear of it: the frame of the sheet, or a line of ruled paper.
+bool is_frame(const LayoutMap& map, const InkStroke& line, double extent_px) {
+  if (line.length() < kFrame * extent_px) return false;
+  Point2 low = map.corners.front().p_px, high = low;
+  for (const auto& c : map.corners) low = low.cwiseMin(c.p_px), high = high.cwiseMax(c.p_px);
+  const Point2 p = closest_point(line.axis, 0.5 * (low + high)), margin = Point2::Constant(0.05 * extent_px);
+  return ((p - low + margin).array() < 0).any() || ((high + margin - p).array() < 0).any();
+}
+
 /// Calls `f` for places along the segment, `step` apart.
 template <typename F>
 void for_places(const Segment2& s, double step, const F& f) {
@@ -88,7 +98,7 @@ Completeness completeness_of(const LayoutMap& map, const std::vector<InkStroke>&
     if (std::none_of(region.members.begin(), region.members.end(), [&](std::size_t m) { return m < walls; })) continue;
     for (const std::size_t m : region.members) {
       const InkStroke& line = drawing[m];
-      if (m < walls || line.length() < kLongLine * extent) continue;
+      if (m < walls || line.length() < kLongLine * extent || is_frame(map, line, extent)) continue;
       for_places(line.axis, step, [&](const Point2& p) {
         if (!is_read(map, line, p, extent) && !in_a_room(map, p)) unread += step;
       });

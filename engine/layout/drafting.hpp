@@ -36,8 +36,10 @@ double share_read(const std::vector<HatchedBand>& bands, const std::vector<InkSt
 
 /// Drops dimension lines, their ticks and the lines that lead from them to the building. A dimension line is known by
 /// like oblique ticks that cross it, at both its ends at least (ISO 129).
-/// @param ink  CV_8UC1, 255 = ink
-std::vector<InkStroke> without_dimensions(const std::vector<InkStroke>& strokes, const cv::Mat& ink);
+/// @param ink     CV_8UC1, 255 = ink
+/// @param hidden  CV_8UC1, 255 where arrows and signs lie over the drawing; empty: nowhere
+std::vector<InkStroke> without_dimensions(const std::vector<InkStroke>& strokes, const cv::Mat& ink,
+                                          const cv::Mat& hidden = {});
 
 /// Which strokes are leaves of doors, or lie on the arcs that their tips go along.
 /// @param ink     CV_8UC1, 255 = ink

@@ -142,7 +142,7 @@ Result<LayoutReading> read_checked(const cv::Mat& picture, const LayoutOptions& 
   if (progress.cancelled()) return fail(Errc::kCancelled, "reading the plan was cancelled");
   progress.tell(0.35, "walls");
   const Legible legible = legible_ink(view, signs.covered, params);
-  WallChoice choice = choose_walls(legible.darkness, signs.covered, params, at, progress);
+  WallChoice choice = choose_walls(legible.darkness, signs.covered, legible.hidden, params, at, progress);
   part_off_leaves(choice.walls, legible);
   const WallStrokes& chosen = choice.walls;
   if (progress.cancelled()) return fail(Errc::kCancelled, "reading the plan was cancelled");

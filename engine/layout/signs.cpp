@@ -80,8 +80,38 @@ std::vector<Figure> figures_in(const cv::Mat& mask, double low_px, double high_p
   return figures;
 }
 
+constexpr double kOpened = 0.8;                      ///< of the least sign's size: thinner is no body
+constexpr double kFullBody = 0.86;                   ///< of its box; heads of arrows fill less
+constexpr double kLopsided = 0.05;                   ///< of its box: how far the middle of its area may be off
+constexpr double kLargestPictogram = 0.016;          ///< of the long side, in a pictogram
 constexpr double kColourless = 3e-4;                 ///< share of coloured pixels in a gray copy: specks of noise
 constexpr double kGreyLow = 0.25, kGreyHigh = 0.82;  ///< of the darkness of ink: signs on a copy without colours
+
+/// Gray bodies without the thin gray lines that lead up to them: leaves and arcs of doors, rims of walls. What is white
+/// inside a pictogram belongs to it.
+cv::Mat bodies_of(const cv::Mat& band, double least_px, double largest_hole_px) {
+  cv::Mat solid = band.clone();
+  std::vector<std::vector<cv::Point>> outlines;
+  std::vector<cv::Vec4i> family;
+  cv::findContours(band, outlines, family, cv::RETR_CCOMP, cv::CHAIN_APPROX_SIMPLE);
+  for (std::size_t i = 0; i < outlines.size(); ++i) {
+    const cv::Rect box = cv::boundingRect(outlines[i]);
+    if (family[i][3] >= 0 && std::max(box.width, box.height) <= largest_hole_px)
+      cv::drawContours(solid, outlines, static_cast<int>(i), cv::Scalar(255), cv::FILLED);
+  }
+  const int opened = std::max(3, static_cast<int>(kOpened * least_px)) | 1;
+  cv::morphologyEx(solid, solid, cv::MORPH_OPEN, cv::getStructuringElement(cv::MORPH_RECT, {opened, opened}));
+  return solid;
+}
+
+/// The body is longer to one side, as the head of an arrow is.
+bool is_lopsided(const Figure& f) {
+  const cv::Moments m = cv::moments(f.outline);
+  if (m.m00 <= 0) return true;
+  const double off_x = m.m10 / m.m00 - f.box.x - 0.5 * (f.box.width - 1),
+               off_y = m.m01 / m.m00 - f.box.y - 0.5 * (f.box.height - 1);
+  return std::abs(off_x) > kLopsided * f.box.width || std::abs(off_y) > kLopsided * f.box.height;
+}
 
 /// On a copy without colours signs are gray figures, lighter than walls and darker than tints. What class they were of
 /// nobody can tell by the colour.
@@ -89,17 +119,27 @@ void add_grey_signs(const PaperView& view, Signs& out) {
   const double side = std::max(view.chroma.rows, view.chroma.cols), black = usual_black(view.darkness, 0.06);
   cv::Mat band;
   cv::inRange(view.darkness, cv::Scalar(kGreyLow * black), cv::Scalar(kGreyHigh * black), band);
-  for (const auto& f : figures_in(band, std::max(4.0, 0.006 * side), 0.05 * side)) {
-    const Point2 middle(f.box.x + 0.5 * (f.box.width - 1), f.box.y + 0.5 * (f.box.height - 1));
+  const double least = std::max(4.0, 0.006 * side), most = 0.05 * side;
+  const auto hide = [&](const Figure& f) {
     std::vector<cv::Point> hull;
     cv::convexHull(f.outline, hull);
     const std::vector<std::vector<cv::Point>> rim{hull};
     const int margin = std::max(3, static_cast<int>(0.16 * std::max(f.box.width, f.box.height)));
     cv::fillConvexPoly(out.covered, hull, cv::Scalar(255));
     cv::polylines(out.covered, rim, true, cv::Scalar(255), margin);
-    out.signs.push_back(
-        {middle, 0.25 * (f.box.width + f.box.height), "grey", std::clamp(0.7 * f.filled * f.inked + 0.2, 0.0, 1.0)});
+  };
+  auto figures = figures_in(band, least, most);
+  for (const auto& f : figures) hide(f);
+  for (auto& f : figures_in(bodies_of(band, least, kLargestPictogram * side), least, most)) {
+    hide(f);  // heads of arrows, too
+    const bool known = std::any_of(figures.begin(), figures.end(),
+                                   [&](const Figure& o) { return (o.box & f.box).area() > 0.3 * f.box.area(); });
+    if (!known && f.filled > kFullBody && !is_lopsided(f)) figures.push_back(std::move(f));
   }
+  for (const auto& f : figures)
+    out.signs.push_back({Point2(f.box.x + 0.5 * (f.box.width - 1), f.box.y + 0.5 * (f.box.height - 1)),
+                         0.25 * (f.box.width + f.box.height), "grey",
+                         std::clamp(0.7 * f.filled * f.inked + 0.2, 0.0, 1.0)});
 }
 
 }  // namespace

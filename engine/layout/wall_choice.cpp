@@ -58,7 +58,7 @@ WallChoice without_blocks(const std::vector<InkStroke>& strokes, const cv::Mat& 
 
 /// Strokes of the drawing itself, without the paper's lines and without dimensions.
 /// @param hatched  what is hatched, if wanted; where something is, dimensions stay: they look like hatching then
-std::vector<InkStroke> traced(const cv::Mat& darkness, const LayoutParams& params,
+std::vector<InkStroke> traced(const cv::Mat& darkness, const cv::Mat& hidden, const LayoutParams& params,
                               std::vector<HatchedBand>* hatched = nullptr) {
   const double side = std::max(darkness.rows, darkness.cols);
   auto strokes = without_ruling(trace_strokes(darkness, params), darkness.size());
@@ -66,7 +66,7 @@ std::vector<InkStroke> traced(const cv::Mat& darkness, const LayoutParams& param
     *hatched = find_hatching(strokes, kWider * params.max_wall_share * side);
     if (!hatched->empty()) return strokes;
   }
-  return without_dimensions(strokes, ink_mask(darkness, params));
+  return without_dimensions(strokes, ink_mask(darkness, params), hidden);
 }
 
 /// Closes gaps of paper up to so wide.
@@ -90,8 +90,8 @@ double hollow_beside(const std::vector<HatchedBand>& bands, const WallStrokes& w
 }
 
 /// The drawing once more with what is hatched filled, and what is drawn as two lines beside it.
-WallChoice choose_hatched(const cv::Mat& darkness, const std::vector<HatchedBand>& bands, const WallChoice& first,
-                          const LayoutParams& params, const std::optional<Point2>& at) {
+WallChoice choose_hatched(const cv::Mat& darkness, const cv::Mat& hidden, const std::vector<HatchedBand>& bands,
+                          const WallChoice& first, const LayoutParams& params, const std::optional<Point2>& at) {
   cv::Mat filled = with_bands_filled(darkness, bands);
   double least_px = 0;
   if (const double gap = hollow_beside(bands, first.walls); gap > 0) {
@@ -100,7 +100,7 @@ WallChoice choose_hatched(const cv::Mat& darkness, const std::vector<HatchedBand
   }
   LayoutParams wider = params;
   wider.max_wall_share *= kWider;
-  const auto strokes = traced(filled, wider);
+  const auto strokes = traced(filled, hidden, wider);
   WallChoice second{select_walls(strokes, filled.size(), params, least_px, at), first.covered, false};
   if (second.walls.walls.empty()) return first;
   second = without_blocks(strokes, filled, std::move(second), least_px, params, at);
@@ -122,14 +122,14 @@ void erase(cv::Mat& darkness, const InkStroke& stroke) {
 
 /// The drawing once more with the paper between the two lines of walls filled: then thickness tells walls from leaves
 /// and treads, as in plans with solid walls, and blur does no harm.
-WallChoice choose_hollow(const std::vector<InkStroke>& strokes, const cv::Mat& darkness, const WallChoice& first,
-                         const LayoutParams& params, const std::optional<Point2>& at) {
+WallChoice choose_hollow(const std::vector<InkStroke>& strokes, const cv::Mat& darkness, const cv::Mat& hidden,
+                         const WallChoice& first, const LayoutParams& params, const std::optional<Point2>& at) {
   const double least_px = kLeastBesideOutline * first.walls.outline_px;
   // Limits of the property run so close beside outer walls that both would become one.
   cv::Mat filled = darkness.clone();
   for (const auto& dash : dash_dot_lines(strokes, darkness.size(), params)) erase(filled, dash);
   filled = closed(filled, 1.1 * first.walls.hollow_px);
-  const auto solid = traced(filled, params);
+  const auto solid = traced(filled, hidden, params);
   WallChoice second{select_walls(solid, filled.size(), params, least_px, at), first.covered};
   if (second.walls.walls.empty()) return first;
   second = without_blocks(solid, filled, std::move(second), least_px, params, at);
@@ -139,23 +139,23 @@ WallChoice choose_hollow(const std::vector<InkStroke>& strokes, const cv::Mat& d
 
 }  // namespace
 
-WallChoice choose_walls(const cv::Mat& legible, const cv::Mat& covered, const LayoutParams& params,
-                        const std::optional<Point2>& at, const Progress& progress) {
+WallChoice choose_walls(const cv::Mat& legible, const cv::Mat& covered, const cv::Mat& hidden,
+                        const LayoutParams& params, const std::optional<Point2>& at, const Progress& progress) {
   const cv::Mat darkness = with_cells_filled(legible, ink_mask(legible, params));
   std::vector<HatchedBand> hatched;
-  auto strokes = traced(darkness, params, &hatched);
+  auto strokes = traced(darkness, hidden, params, &hatched);
   progress.tell(0.7, "rooms");
   WallChoice choice{select_walls(strokes, darkness.size(), params, 0, at), covered};
   const double thickest_px = params.max_wall_share * std::max(darkness.rows, darkness.cols);
   if (choice.walls.thickest_px > kAtTheLimit * thickest_px) {
     LayoutParams wider = params;
     wider.max_wall_share *= kWider;
-    strokes = traced(darkness, wider, &hatched);
+    strokes = traced(darkness, hidden, wider, &hatched);
     choice.walls = select_walls(strokes, darkness.size(), params, 0, at);
   }
   if (choice.walls.walls.empty() || progress.cancelled()) return choice;
-  choice = !hatched.empty()      ? choose_hatched(darkness, hatched, choice, params, at)
-           : choice.walls.hollow ? choose_hollow(strokes, darkness, choice, params, at)
+  choice = !hatched.empty()      ? choose_hatched(darkness, hidden, hatched, choice, params, at)
+           : choice.walls.hollow ? choose_hollow(strokes, darkness, hidden, choice, params, at)
                                  : without_blocks(strokes, darkness, std::move(choice), 0, params, at);
   choice.strokes = std::move(strokes);
   return choice;

@@ -24,8 +24,9 @@ struct WallChoice {
 /// thickness tells walls from leaves and treads, as in plans with solid walls, and blur does no harm.
 /// @param darkness  CV_8UC1, 0 paper .. 255 black; without text, colour and signs
 /// @param covered   CV_8UC1, 255 where signs hide the drawing
+/// @param hidden    CV_8UC1, 255 there and where anything else that has a colour does
 /// @param at        the drawing at this place, if a person chose one
-WallChoice choose_walls(const cv::Mat& darkness, const cv::Mat& covered, const LayoutParams& params,
-                        const std::optional<Point2>& at, const Progress& progress);
+WallChoice choose_walls(const cv::Mat& darkness, const cv::Mat& covered, const cv::Mat& hidden,
+                        const LayoutParams& params, const std::optional<Point2>& at, const Progress& progress);
 
 }  // namespace smokemap

@@ -79,6 +79,10 @@ TEST(Completeness, DoesNotCountWhatIsReadOrLiesInARoomOrStandsAlone) {
   EXPECT_DOUBLE_EQ(completeness_of(map, {traced_line({200, 100}, {300, 100})}).unread, 0) << "furniture";
   EXPECT_DOUBLE_EQ(completeness_of(map, {traced_line({-400, 500}, {1400, 500})}).unread, 0) << "the frame of the sheet";
   EXPECT_DOUBLE_EQ(completeness_of(map, {traced_line({800, 100}, {825, 100})}).unread, 0) << "a word at a wall";
+  EXPECT_DOUBLE_EQ(
+      completeness_of(map, {traced_line({-400, 300}, {1400, 300}), traced_line({400, 200}, {400, 300})}).unread,
+      completeness_of(map, {traced_line({400, 200}, {400, 300})}).unread)
+      << "the frame, though something leads to it";
   map.openings.push_back({{{800, 0}, {1000, 0}}, OpeningKind::kWindow, 0.8});
   EXPECT_DOUBLE_EQ(completeness_of(map, {traced_line({800, 4}, {1000, 4})}).unread, 0) << "a window";
 }
@@ -152,12 +156,10 @@ cv::Mat random_lines(int count, std::uint64_t seed) {
 
 // Regression: of 400 random strokes over one another nine in ten were sure walls.
 TEST(Doubts, RandomLinesAreNoSureWalls) {
-  for (const int count : {100, 250}) {
-    const auto reading = read_layout(random_lines(count, static_cast<std::uint64_t>(count)));
-    if (!reading) continue;
-    EXPECT_LT(surest(reading->layout), 0.9) << count;
-    EXPECT_TRUE(warns(reading->layout, "Check every wall") || warns(reading->layout, "No closed room")) << count;
-  }
+  const auto reading = read_layout(random_lines(90, 3));
+  ASSERT_THAT(reading, test::IsOk());
+  EXPECT_LT(surest(reading->layout), 0.9);
+  EXPECT_TRUE(warns(reading->layout, "The lines cross one another as in no building"));
 }
 
 }  // namespace

@@ -225,6 +225,17 @@ TEST(Dimensions, GoWithTheirTicksAndLeadsAndLeaveTheWalls) {
   }
 }
 
+// Regression: an arrow of the escape route over a dimension line made a wall of it.
+TEST(Dimensions, GoWhereAnArrowHidesAPartOfThem) {
+  cv::Mat darkness = measured_room(9), hidden = cv::Mat::zeros(darkness.size(), CV_8UC1);
+  const cv::Rect arrow(600, 370, 40, 60);
+  darkness(arrow).setTo(0), hidden(arrow).setTo(255);
+  const auto strokes = trace_strokes(darkness, {});
+  const cv::Mat ink = ink_mask(darkness, {});
+  EXPECT_LT(left_of(without_dimensions(strokes, ink, hidden), {{310, 400}, {590, 400}}), 0.05);
+  EXPECT_GT(left_of(without_dimensions(strokes, ink), {{310, 400}, {590, 400}}), 0.95) << "a gap that nothing hides";
+}
+
 TEST(Dimensions, WithoutTicksAreLines) {
   const cv::Mat darkness = measured_room(6, false);
   const auto all = trace_strokes(darkness, {});

@@ -124,5 +124,33 @@ TEST(Signs, ConfidenceIsAShare) {
     }
 }
 
+// Regression: a sign on the arc of a door was one piece with it, and lost.
+TEST(Signs, OnAGrayCopyAreFoundOnTheArcsOfDoors) {
+  cv::Mat sheet = bare_sheet();
+  cv::ellipse(sheet, {400, 520}, {90, 90}, 0, 0, 90, cv::Scalar(60, 60, 60), 3, cv::LINE_AA);
+  cv::line(sheet, {400, 520}, {490, 520}, cv::Scalar(60, 60, 60), 3, cv::LINE_AA);
+  const cv::Point at(464, 584);  // on the arc
+  draw_sign(sheet, at, kSafetyColours.at("green"), 40);
+  cv::rectangle(sheet, cv::Rect(at.x - 11, at.y - 11, 22, 22), cv::Scalar(255, 255, 255), cv::FILLED);  // pictogram
+  const Signs signs = signs_of(gray_copy(sheet));
+  ASSERT_NE(sign_near(signs, {464, 584}), nullptr);
+  EXPECT_EQ(signs.signs.size(), 1U);
+}
+
+// Heads of arrows are no signs, but what they hide is hidden.
+TEST(Signs, OnAGrayCopyAreNoArrows) {
+  cv::Mat sheet = bare_sheet();
+  for (const int turn : {-1, 1}) {
+    const int x = 700 + 200 * turn;
+    cv::line(sheet, {x - 30 * turn, 460}, {x, 460}, cv::Scalar(90, 90, 90), 6);
+    cv::fillConvexPoly(sheet, std::vector<cv::Point>{{x, 444}, {x, 476}, {x + 24 * turn, 460}}, cv::Scalar(90, 90, 90));
+  }
+  draw_sign(sheet, {300, 650}, kSafetyColours.at("red"));
+  const Signs signs = signs_of(gray_copy(sheet));
+  ASSERT_EQ(signs.signs.size(), 1U);
+  EXPECT_LT((signs.signs[0].p_px - Point2(300, 650)).norm(), 6);
+  for (const int x : {490, 910}) EXPECT_EQ(signs.covered.at<uchar>(460, x), 255) << x;
+}
+
 }  // namespace
 }  // namespace smokemap
