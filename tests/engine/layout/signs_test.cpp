@@ -142,7 +142,7 @@ TEST(Signs, OnAGrayCopyAreNoArrows) {
   cv::Mat sheet = bare_sheet();
   for (const int turn : {-1, 1}) {
     const int x = 700 + 200 * turn;
-    cv::line(sheet, {x - 30 * turn, 460}, {x, 460}, cv::Scalar(90, 90, 90), 6);
+    cv::line(sheet, {x - 30 * turn, 460}, {x, 460}, cv::Scalar(90, 90, 90), 4);
     cv::fillConvexPoly(sheet, std::vector<cv::Point>{{x, 444}, {x, 476}, {x + 24 * turn, 460}}, cv::Scalar(90, 90, 90));
   }
   draw_sign(sheet, {300, 650}, kSafetyColours.at("red"));
