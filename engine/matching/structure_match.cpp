@@ -188,14 +188,7 @@ StructureMatch match_structure(const StructureProblem& problem) {
 
 double structure_energy(const StructureProblem& problem, const std::vector<int>& partner) {
   const StructureTerms terms(problem);
-  std::vector<int> so_far(partner.size(), -1);
-  for (int i = 0; i < terms.rows(); ++i) {
-    const int j = partner[static_cast<size_t>(i)];
-    if (j < 0 && terms.is_forced(i)) return -1e9;
-    if (j >= 0 && (!terms.possible(i, j) || !terms.allowed(i, j, so_far))) return -1e9;
-    so_far[static_cast<size_t>(i)] = j;
-  }
-  return terms.energy(partner);
+  return terms.permits(partner) ? terms.energy(partner) : -1e9;
 }
 
 }  // namespace smokemap

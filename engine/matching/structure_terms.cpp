@@ -102,6 +102,16 @@ bool StructureTerms::allowed(int i, int j, const std::vector<int>& partner) cons
   return true;
 }
 
+bool StructureTerms::permits(const std::vector<int>& partner) const {
+  std::vector<int> so_far(partner.size(), -1);
+  for (int i = 0; i < rows(); ++i) {
+    const int j = partner[static_cast<size_t>(i)];
+    if (!possible(i, j) || !allowed(i, j, so_far)) return false;
+    so_far[static_cast<size_t>(i)] = j;
+  }
+  return true;
+}
+
 double StructureTerms::agreement(int i, int k, int j, int l) const {
   if (j == l) return problem_.a->hops(i, k) == 1 ? kSamePlace : -1;
   const double cosine = ax_(i, k) * bx_(j, l) + ay_(i, k) * by_(j, l) - kRightAngleHalf;

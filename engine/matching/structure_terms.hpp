@@ -24,6 +24,9 @@ class StructureTerms {
   /// May i go to j beside those that already go there? They must touch i.
   bool allowed(int i, int j, const std::vector<int>& partner) const;
 
+  /// Does a whole assignment keep to what people said, to the candidates and to who touches whom?
+  bool permits(const std::vector<int>& partner) const;
+
   /// What i going to j adds to the energy, the others as given; 0 for none.
   double gain_of(int i, int j, const std::vector<int>& partner) const { return gain_of_without(i, j, partner, i); }
   /// The same without the terms between i and `left_out`.

@@ -183,13 +183,14 @@ inline PlanSketch sketch_of(const PlanPicture& plan, const SketchHabits& habits,
                       std::max(1.0, habits.stretch);
   const cv::Size size(static_cast<int>(side), static_cast<int>(side));
   const double angle = habits.tilt_rad + habits.quarter_turns * std::numbers::pi / 2;
+  const double cosine = std::cos(angle), sine = std::sin(angle);
   const double phase_x = uniform(random, 0, 6), phase_y = uniform(random, 0, 6);
   sketch.to_plan = cv::Mat(size, CV_32FC2);
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x) {
       const double dx = (habits.mirrored ? -1 : 1) * (x - 0.5 * size.width), dy = y - 0.5 * size.height;
-      const double u = (std::cos(angle) * dx - std::sin(angle) * dy) / (habits.scale * habits.stretch);
-      const double v = (std::sin(angle) * dx + std::cos(angle) * dy) / habits.scale;
+      const double u = (cosine * dx - sine * dy) / (habits.scale * habits.stretch);
+      const double v = (sine * dx + cosine * dy) / habits.scale;
       const double px = 0.5 * rooms.cols + u + habits.bend_px * std::sin(v / 55 + phase_x);
       const double py = 0.5 * rooms.rows + v + habits.bend_px * std::sin(u / 70 + phase_y);
       const bool even = habits.uneven <= 0;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <opencv2/core.hpp>
 #include <random>
 
@@ -42,6 +43,22 @@ Segmentation mirror_image(const cv::Mat& rooms) {
   cv::Mat mirrored;
   cv::flip(rooms, mirrored, 1);
   return *segmentation_from_labels(mirrored);
+}
+
+/// A building, a drawing of it, and what matching says of the two; made once, because several tests ask for it.
+struct Own {
+  Segmentation drawing, map;
+  Matcher matcher;
+  Matching before;  ///< any taps
+};
+
+const Own& own_of(std::uint64_t seed) {
+  static std::map<std::uint64_t, Own> known;
+  if (const auto found = known.find(seed); found != known.end()) return found->second;
+  const test::PlanPicture plan = building_of(seed);
+  const Segmentation drawing = drawing_of(plan, seed), map = *segmentation_from_labels(plan.rooms);
+  const Matcher matcher = *Matcher::create(drawing, map);
+  return known.emplace(seed, Own{drawing, map, matcher, *matcher.solve({}, {})}).first->second;
 }
 
 TEST(SameBuilding, RisesWithEveryKindOfEvidenceAndWithTaps) {
@@ -87,11 +104,10 @@ TEST(SameBuilding, IsNeverQuiteSureOfAnything) {
 TEST(SameBuilding, TellsABuildingFromOthersAndFromItsMirrorImage) {
   double like = 0;
   for (std::uint64_t seed = 4; seed <= 6; ++seed) {
-    const test::PlanPicture plan = building_of(seed);
-    const Segmentation drawing = drawing_of(plan, seed);
-    const double own = match(drawing, *segmentation_from_labels(plan.rooms))->same_building;
+    const Segmentation& drawing = own_of(seed).drawing;
+    const double own = own_of(seed).before.same_building;
     EXPECT_GT(own, 0.9);
-    EXPECT_LT(match(drawing, mirror_image(plan.rooms))->same_building, own);
+    EXPECT_LT(match(drawing, mirror_image(own_of(seed).map.labels))->same_building, own);
     const Matching other_kind = *match(drawing, *segmentation_from_labels(building_of(seed + 1).rooms));
     EXPECT_LT(other_kind.same_building, 0.6);
     EXPECT_LT(surest(other_kind), kShownAsSure);
@@ -133,10 +149,7 @@ TEST(SameBuilding, WhatIsDoubtfulAsAWholeHasNoSureRoomButThoseAPersonNamed) {
 TEST(SameBuilding, RightTapsRaiseIt) {
   int raised = 0, all = 0;
   for (const std::uint64_t seed : {1, 3, 4, 6}) {
-    const test::PlanPicture plan = building_of(seed);
-    const Segmentation drawing = drawing_of(plan, seed), map = *segmentation_from_labels(plan.rooms);
-    const Matcher matcher = *Matcher::create(drawing, map);
-    const Matching before = *matcher.solve({}, {});
+    const auto& [drawing, map, matcher, before] = own_of(seed);
     const RegionPair surest_pair = before.pairs.back();
     RegionPair said = surest_pair;
     said.verdict = Verdict::kConfirmed;
@@ -149,11 +162,8 @@ TEST(SameBuilding, RightTapsRaiseIt) {
 TEST(SameBuilding, RightTapsNeverLowerItBelowWhatWasSaidWithoutThem) {
   // Two right taps made seven of fourteen robot maps of their own building "another building": what a person binds is
   // not what the answer would have chosen, so that it looked poorer than the mirror image that nobody had tapped.
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const test::PlanPicture plan = building_of(seed);
-    const Segmentation drawing = drawing_of(plan, seed), map = *segmentation_from_labels(plan.rooms);
-    const Matcher matcher = *Matcher::create(drawing, map);
-    const Matching before = *matcher.solve({}, {});
+  for (const std::uint64_t seed : {1, 3, 4, 6}) {
+    const auto& [drawing, map, matcher, before] = own_of(seed);
     std::vector<Pin> pins;
     for (const RegionPair& pair : before.pairs) {
       pins.push_back({drawing.regions[static_cast<size_t>(pair.label_a - 1)].anchor_px,
@@ -166,10 +176,7 @@ TEST(SameBuilding, RightTapsNeverLowerItBelowWhatWasSaidWithoutThem) {
 }
 
 TEST(SameBuilding, RoomsThatWereRejectedMayLowerIt) {
-  const test::PlanPicture plan = building_of(4);
-  const Segmentation drawing = drawing_of(plan, 4), map = *segmentation_from_labels(plan.rooms);
-  const Matcher matcher = *Matcher::create(drawing, map);
-  const Matching before = *matcher.solve({}, {});
+  const auto& [drawing, map, matcher, before] = own_of(4);
   std::vector<RegionPair> said = before.pairs;
   for (RegionPair& pair : said) pair.verdict = Verdict::kRejected;
   EXPECT_LT(matcher.solve({}, said)->same_building, before.same_building);

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "core/random.hpp"
+#include "matching/structure_terms.hpp"
 
 namespace smokemap {
 namespace {
@@ -49,12 +50,12 @@ StructureProblem problem_of(const RegionGraph& a, const RegionGraph& b) {
   return problem;
 }
 
-double best_by_trying_all(const StructureProblem& problem, std::vector<int>& partner, size_t depth) {
-  if (depth == partner.size()) return structure_energy(problem, partner);
+double best_by_trying_all(const StructureTerms& terms, std::vector<int>& partner, size_t depth) {
+  if (depth == partner.size()) return terms.permits(partner) ? terms.energy(partner) : -1e9;
   double best = -1e9;
-  for (int j = -1; j < problem.b->size(); ++j) {
+  for (int j = -1; j < terms.cols(); ++j) {
     partner[depth] = j;
-    best = std::max(best, best_by_trying_all(problem, partner, depth + 1));
+    best = std::max(best, best_by_trying_all(terms, partner, depth + 1));
   }
   partner[depth] = -1;
   return best;
@@ -74,7 +75,7 @@ TEST(MatchStructure, IsAsGoodAsTryingEveryAssignmentOfSmallGraphs) {
     std::vector<int> partner(static_cast<size_t>(a.size()), -1);
     EXPECT_TRUE(match.exact);
     EXPECT_NEAR(match.energy, structure_energy(problem, match.partner), 1e-9);
-    EXPECT_NEAR(match.energy, best_by_trying_all(problem, partner, 0), 1e-9) << "trial " << trial;
+    EXPECT_NEAR(match.energy, best_by_trying_all(StructureTerms(problem), partner, 0), 1e-9) << "trial " << trial;
   }
 }
 
@@ -89,11 +90,12 @@ TEST(MatchStructure, IsAsGoodAsTryingEveryAssignmentOfEightRegions) {
         problem.likeness(i, static_cast<int>(uniform_index(random, 8))) = uniform(random, 0.1, 0.8);
     problem.many_to_one = trial != 1;
     const StructureMatch match = match_structure(problem);
+    const StructureTerms terms(problem);
     std::vector<int> partner(8, -1);
     double best = -1e9;
     const auto try_all = [&](auto&& self, int depth) -> void {
       if (depth == 8) {
-        best = std::max(best, structure_energy(problem, partner));
+        if (terms.permits(partner)) best = std::max(best, terms.energy(partner));
         return;
       }
       for (int j = -1; j < 8; ++j)
