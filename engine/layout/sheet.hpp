@@ -35,6 +35,10 @@ struct RefinedSheet {
 };
 RefinedSheet refine_sheet(const cv::Mat& bgr, const SheetCorners& corners_px);
 
+/// A step in brightness runs inside the sides at the same distance from all of them: they may be those of a picture
+/// frame as bright as paper. Coloured borders printed on the sheet look alike.
+bool may_be_framed(const cv::Mat& bgr, const SheetCorners& corners_px);
+
 /// From straight lines in a picture: the rectangle of the sheet that bounds them. Nothing when one of two families of
 /// lines (rows, columns; each within 35 degrees of its axis) does not meet in one point, or when both are parallel: a
 /// picture taken straight on needs no corners.

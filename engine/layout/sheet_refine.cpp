@@ -15,6 +15,7 @@
 
 #include "geometry/segment2.hpp"
 #include "layout/median.hpp"
+#include "layout/rim_profile.hpp"
 #include "layout/sheet.hpp"
 
 namespace smokemap {
@@ -30,49 +31,6 @@ constexpr double kStandsOut = 0.6;    ///< within a strip's width of a step less
 constexpr double kDoubtful = 0.6;     ///< trust in a rim that may be a bright frame's
 constexpr double kLeaves = 0.4;       ///< of the step: colours that differ by more are no longer the wall's
 constexpr double kOnTheLinePx = 1.5;  ///< of the fine line: what counts as agreeing with it
-
-using Colour = std::array<int, 3>;
-
-/// Colours across one place of a side, from the outside inwards.
-class RimProfile {
- public:
-  RimProfile(const cv::Mat& bgr, const Point2& p, const Point2& inward, int low, int high) : low_(low) {
-    for (int o = low; o <= high; ++o) {
-      const Point2 q = p + o * inward;
-      const int x = static_cast<int>(std::lround(q.x())), y = static_cast<int>(std::lround(q.y()));
-      const bool seen = x >= 0 && y >= 0 && x < bgr.cols && y < bgr.rows;
-      const cv::Vec3b c = seen ? bgr.at<cv::Vec3b>(y, x) : cv::Vec3b();
-      seen_.push_back(seen);
-      colours_.push_back({c[0], c[1], c[2]});
-    }
-  }
-  /// Median colour of the offsets [from, to); nothing where the picture ends.
-  std::optional<Colour> median(int from, int to) const {
-    Colour out{};
-    std::vector<int> values;
-    for (std::size_t c = 0; c < 3; ++c) {
-      values.clear();
-      for (int o = from; o < to; ++o) {
-        const auto i = static_cast<std::size_t>(o - low_);
-        if (!seen_[i]) return std::nullopt;
-        values.push_back(colours_[i][c]);
-      }
-      const auto nth = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), nth, values.end());
-      out[c] = *nth;
-    }
-    return out;
-  }
-
- private:
-  int low_;
-  std::vector<bool> seen_;
-  std::vector<Colour> colours_;
-};
-
-int largest_difference(const Colour& a, const Colour& b) {
-  return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
-}
 
 /// Offsets at which the colours change. Medians differ all over a strip's width about an edge; smoothing over as much
 /// leaves one peak, at the edge. Where they differ everywhere (a rough wall) there is no edge.

@@ -19,6 +19,7 @@ constexpr std::size_t kMostSides = 14;  ///< lines of each direction that are tr
 constexpr int kSideSamples = 48;
 constexpr double kSameLineDeg = 1.0, kSameLinePx = 2.5;
 constexpr double kUnseenRim = 0.4;        ///< confidence left where one side's rim is not seen at full size
+constexpr double kPerhapsFramed = 0.6;    ///< the most that is said of corners that may be a bright frame's
 constexpr double kSeenRim = 0.75;         ///< share of a side at which its rim is seen, for full confidence
 constexpr double kUnknownSigma = 0.25;    ///< of the picture, where nothing stands out
 constexpr double kVanishingSigma = 0.05;  ///< of the picture: what a rectangle of the drawing says of the sheet's rim
@@ -271,6 +272,7 @@ SheetProposal propose_sheet(const cv::Mat& bgr) {
     proposal.sigma_px = refined.sigma_px;
     proposal.confidence = std::clamp((found->weakest_side - 0.3) / 0.6, 0.0, 1.0) *
                           (kUnseenRim + (1 - kUnseenRim) * std::min(1.0, refined.agreement / kSeenRim));
+    if (may_be_framed(bgr, proposal.corners_px)) proposal.confidence = std::min(proposal.confidence, kPerhapsFramed);
   } else if (const auto vanishing = propose_by_vanishing_points(pieces, small.size())) {
     proposal = {enlarge(vanishing->corners_px), vanishing->confidence, kVanishingSigma * std::max(bgr.rows, bgr.cols)};
   }

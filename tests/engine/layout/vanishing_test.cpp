@@ -196,6 +196,27 @@ TEST(RefineSheet, IsNotSureWhereAFrameIsBrighterThanPaper) {
   EXPECT_TRUE(worst_of(refined) < 3 || refined.agreement < 0.7) << worst_of(refined) << " " << refined.agreement;
 }
 
+// Regression: the outer edge of a picture frame as bright as paper was the sheet's rim, and sure.
+TEST(ProposeSheet, IsNotSureOfAFrameAsBrightAsPaper) {
+  for (const int frame : {250, 212, 190})
+    for (const double width : {0.008, 0.02}) {
+      const auto picture = bordered_paper(cv::Scalar(frame, frame + 2, frame + 4), width, 0, cv::Scalar(90, 95, 100));
+      const auto proposal = propose_sheet(picture);
+      double worst = 0;
+      for (std::size_t c = 0; c < 4; ++c) worst = std::max(worst, (proposal.corners_px[c] - kPaper[c]).norm());
+      EXPECT_TRUE(worst < 4 || proposal.confidence < 0.7) << frame << " " << width << ": " << worst;
+    }
+}
+
+TEST(FramedSheet, HasAStepInsideSeveralSides) {
+  EXPECT_FALSE(may_be_framed(bordered_paper(cv::Scalar(), 0, 0), kPaper));
+  EXPECT_FALSE(may_be_framed(paper_with_hairline(kPaper, 0.012), kPaper)) << "a printed line is no step";
+  EXPECT_FALSE(may_be_framed(bordered_paper(cv::Scalar(80, 132, 0), 0, 0.012), kPaper))
+      << "a coloured border is printed";
+  EXPECT_TRUE(may_be_framed(bordered_paper(cv::Scalar(250, 252, 254), 0, 0.012), kPaper));
+  EXPECT_FALSE(may_be_framed(cv::Mat(40, 40, CV_8UC3), {Point2(1, 1), Point2(9, 1), Point2(9, 9), Point2(1, 9)}));
+}
+
 TEST(ProposeSheet, SaysHowFarItsCornersMayBeOff) {
   const auto clear = propose_sheet(bordered_paper(cv::Scalar(), 0, 0, cv::Scalar(70, 75, 80)));
   EXPECT_GT(clear.confidence, 0.9);
