@@ -31,7 +31,7 @@ ConstrictionParams matching_segmentation_params();
 ///
 /// Why matching does not use the default method (segment.hpp), which tells more rooms right (robot maps 0.93 against
 /// 0.82): points are carried region by region, so a region that spans two rooms puts half of them into the wrong one,
-/// however well regions are matched. With the true pairs given, room hit is at most 0.77 on KTH and 0.81 / 0.87 on E5
+/// however well regions are matched. With the true pairs given, room hit is at most 0.77 on KTH and 0.82 / 0.90 on E5
 /// with these regions, at most 0.73 and 0.50 / 0.71 with the default ones, which join the rough corridors of robot maps
 /// with what lies beside them (10 regions for 22). And KTH's open plan has no doors to cut at: the default method parts
 /// its clean map finer (12) than the sketches of it (9), this one both alike (9 and 8), so that fewer regions have a
