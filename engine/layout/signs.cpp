@@ -81,6 +81,7 @@ std::vector<Figure> figures_in(const cv::Mat& mask, double low_px, double high_p
 }
 
 constexpr double kOpened = 0.8;                      ///< of the least sign's size: thinner is no body
+constexpr double kLeastBody = 0.012;                 ///< of the long side: letters are smaller (ISO 23601)
 constexpr double kFullBody = 0.86;                   ///< of its box; heads of arrows fill less
 constexpr double kLopsided = 0.05;                   ///< of its box: how far the middle of its area may be off
 constexpr double kLargestPictogram = 0.016;          ///< of the long side, in a pictogram
@@ -89,7 +90,8 @@ constexpr double kGreyLow = 0.25, kGreyHigh = 0.82;  ///< of the darkness of ink
 
 /// Gray bodies without the thin gray lines that lead up to them: leaves and arcs of doors, rims of walls. What is white
 /// inside a pictogram belongs to it.
-cv::Mat bodies_of(const cv::Mat& band, double least_px, double largest_hole_px) {
+/// @param black  CV_8UC1, 255 where it is too dark for a sign: inside the gray rim of a wall
+cv::Mat bodies_of(const cv::Mat& band, const cv::Mat& black, double least_px, double largest_hole_px) {
   cv::Mat solid = band.clone();
   std::vector<std::vector<cv::Point>> outlines;
   std::vector<cv::Vec4i> family;
@@ -99,6 +101,7 @@ cv::Mat bodies_of(const cv::Mat& band, double least_px, double largest_hole_px) 
     if (family[i][3] >= 0 && std::max(box.width, box.height) <= largest_hole_px)
       cv::drawContours(solid, outlines, static_cast<int>(i), cv::Scalar(255), cv::FILLED);
   }
+  solid.setTo(0, black);
   const int opened = std::max(3, static_cast<int>(kOpened * least_px)) | 1;
   cv::morphologyEx(solid, solid, cv::MORPH_OPEN, cv::getStructuringElement(cv::MORPH_RECT, {opened, opened}));
   return solid;
@@ -130,7 +133,8 @@ void add_grey_signs(const PaperView& view, Signs& out) {
   };
   auto figures = figures_in(band, least, most);
   for (const auto& f : figures) hide(f);
-  for (auto& f : figures_in(bodies_of(band, least, kLargestPictogram * side), least, most)) {
+  for (auto& f : figures_in(bodies_of(band, view.darkness > kGreyHigh * black, least, kLargestPictogram * side),
+                            kLeastBody * side, most)) {
     hide(f);  // heads of arrows, too
     const bool known = std::any_of(figures.begin(), figures.end(),
                                    [&](const Figure& o) { return (o.box & f.box).area() > 0.3 * f.box.area(); });

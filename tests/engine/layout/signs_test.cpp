@@ -152,5 +152,14 @@ TEST(Signs, OnAGrayCopyAreNoArrows) {
   for (const int x : {490, 910}) EXPECT_EQ(signs.covered.at<uchar>(460, x), 255) << x;
 }
 
+// Regression: soft letters with their holes filled hid each other's neighbours, and what was left of a word were walls.
+TEST(Signs, AreNoSoftLetters) {
+  cv::Mat sheet(1000, 1400, CV_8UC3, cv::Scalar(255, 255, 255));
+  cv::rectangle(sheet, cv::Rect(100, 200, 1200, 600), cv::Scalar(0, 0, 0), 14);
+  cv::putText(sheet, "BEDROOM 8 ROAD", {300, 500}, cv::FONT_HERSHEY_SIMPLEX, 0.6, cv::Scalar(0, 0, 0), 2, cv::LINE_AA);
+  cv::GaussianBlur(sheet, sheet, {5, 5}, 1.0);
+  EXPECT_EQ(cv::countNonZero(signs_of(sheet).covered(cv::Rect(280, 470, 400, 50))), 0);
+}
+
 }  // namespace
 }  // namespace smokemap
