@@ -54,6 +54,7 @@ nlohmann::json stats_of(const Slam& slam, const SensorLog& log) {
           {"pieces_begun_anew", c.lost},
           {"pieces_found_again", c.relocated},
           {"smoke_beams", c.smoke_beams},
+          {"walker_beams", c.walker_beams},
           {"smoke_share", c.smoke_share},
           {"warnings", log.warnings}};
 }

@@ -14,10 +14,21 @@ constexpr double kMapHalfSize_m = 40.0;
 constexpr int kRebuildEveryNodes = 10;
 constexpr double kScoreMemory = 0.1;  ///< share of the newest score in the usual one
 constexpr double kUsualShare = 0.6;
+constexpr double kScoreGain = 0.02;  ///< by how much a place that was searched for has to fit better ...
+/// ... and by how much for every squared sigma that it is less likely than the place next to the prediction: one in ten
+/// of 180 points tells something of its own (GraphParams::pair_information), two nats each. Without it a scan that
+/// looks ahead slips back along a corridor, to where more of it is on the map.
+constexpr double kScorePerSquaredSigma = 1.0 / 72;
 
 Eigen::Matrix3d spread(const PredictedStep& step) {
   return Eigen::Vector3d(step.sigma_m * step.sigma_m, step.sigma_m * step.sigma_m, step.sigma_rad * step.sigma_rad)
       .asDiagonal();
+}
+
+double squared_sigmas(const Pose2& T_map_robot, const PosePrior& prior) {
+  Eigen::Vector3d away = T_map_robot.vector() - prior.T_map_robot.vector();
+  away.z() = wrap_angle(away.z());
+  return away.dot(prior.information * away);
 }
 
 }  // namespace
@@ -113,7 +124,9 @@ ScanAlignment FrontEnd::search(const std::vector<SurfacePoint>& surface, const P
   PosePrior loose = prior;
   loose.information *= 0.25;
   const ScanAlignment refined = align(surface, map_, found->T_map_robot, params_.align, loose);
-  return refined.score > so_far.score + 0.02 ? refined : so_far;
+  const double less_likely = squared_sigmas(refined.T_map_robot, prior) - squared_sigmas(so_far.T_map_robot, prior);
+  return refined.score > so_far.score + kScoreGain + kScorePerSquaredSigma * std::max(0.0, less_likely) ? refined
+                                                                                                        : so_far;
 }
 
 bool FrontEnd::far_from_last_node() const {

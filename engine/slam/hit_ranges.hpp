@@ -14,6 +14,8 @@ class HitRanges {
   HitRanges(const LaserScan& scan, const BeamConvention& convention);
   std::ptrdiff_t beams() const { return beams_; }
   double step_rad() const { return step_rad_; }
+  double angle(std::ptrdiff_t i) const { return angle_min_rad_ + static_cast<double>(i) * step_rad_; }
+  bool full_turn() const { return full_turn_; }
   /// 0 for beams that hit nothing, and beyond the ends of a scan that is no full turn; around a full turn goes on.
   double at(std::ptrdiff_t i) const {
     if (full_turn_) i = (i % beams_ + beams_) % beams_;

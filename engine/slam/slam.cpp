@@ -8,6 +8,7 @@
 #include "maps/radar_image.hpp"
 #include "slam/radar_points.hpp"
 #include "slam/smoke.hpp"
+#include "slam/walkers.hpp"
 
 namespace smokemap {
 namespace {
@@ -61,7 +62,7 @@ const char* to_string(ScanFate fate) {
 
 class Slam::Impl {
  public:
-  Impl(const SlamParams& params, GraphWork work) : params_(params), work_(work) {}
+  Impl(const SlamParams& params, GraphWork work) : params_(params), work_(work), walkers_(params.walkers) {}
 
   void add_odometry(const Odometry& reading) {
     ++counters_.odometry;
@@ -84,10 +85,11 @@ class Slam::Impl {
   std::unique_ptr<GraphWorker> worker_;
 
  private:
-  ScanOutcome add_points(Stamp stamp, const std::string& robot, const ScanPoints& points);
+  ScanOutcome add_points(Stamp stamp, const std::string& robot, const ScanPoints& points, const PredictedStep& step);
   PredictedStep predict(Stamp stamp);
   void begin();
-  ScanPoints points_of(const LaserScan& scan);
+  ScanPoints points_of(const LaserScan& scan, std::vector<BeamUse> uses);
+  std::vector<BeamUse> without_walkers(const LaserScan& scan, const HitRanges& hits, const PredictedStep& step);
   Pose2 track_pose() const { return front_ ? front_->T_track_robot() : Pose2(); }
   Pose2 pose_of(const Anchor& anchor) const;
   void keep_node(Stamp stamp, const std::string& robot, const ScanPoints& points, const FrontEnd::Tracked& tracked);
@@ -107,6 +109,8 @@ class Slam::Impl {
   std::optional<RadarSweep> last_sweep_;
   std::optional<Pose2> T_odom_sweep_;
   bool sweep_is_new_ = false;
+  Walkers walkers_;
+  Pose2 T_way_robot_;       ///< by the wheels' way and the matched headings
   ScanMemory scan_memory_;  ///< of scans beside a radar
   double smoke_share_ = 0;
   std::optional<Stamp> lidar_stamp_;  ///< of the newest scan
@@ -129,7 +133,11 @@ Result<ScanOutcome> Slam::Impl::add_scan(const LaserScan& scan) {
   }
   last_ranges_ = scan.ranges_m;
   begin();
-  return add_points(scan.stamp, scan.robot, points_of(scan));
+  const PredictedStep step = predict(scan.stamp);
+  HitRanges hits(scan, params_.beams);
+  ScanOutcome outcome = add_points(scan.stamp, scan.robot, points_of(scan, without_walkers(scan, hits, step)), step);
+  walkers_.remember(scan, std::move(hits), T_way_robot_);
+  return outcome;
 }
 
 Result<ScanOutcome> Slam::Impl::add_sweep(const RadarSweep& sweep) {
@@ -146,7 +154,8 @@ Result<ScanOutcome> Slam::Impl::add_sweep(const RadarSweep& sweep) {
   }
   begin();
   return add_points(sweep.stamp, sweep.robot,
-                    surface_points(sweep, twist_for_straightening(), params_.radar, params_.points));
+                    surface_points(sweep, twist_for_straightening(), params_.radar, params_.points),
+                    predict(sweep.stamp));
 }
 
 void Slam::Impl::begin() {
@@ -155,21 +164,37 @@ void Slam::Impl::begin() {
   worker_ = std::make_unique<GraphWorker>(params_, work_);
 }
 
+std::vector<BeamUse> Slam::Impl::without_walkers(const LaserScan& scan, const HitRanges& hits,
+                                                 const PredictedStep& step) {
+  std::vector<BeamUse> uses(scan.ranges_m.size(), BeamUse::kAll);
+  // Who has walked on by so much since the scan before misleads no match.
+  if (step.T_before_now.translation().norm() > 0.5 * params_.walkers.proof_m ||
+      std::abs(step.T_before_now.heading()) > params_.front_end.sparse_step_rad)
+    return uses;
+  const WalkerView seen = walkers_.look(scan, hits, T_way_robot_ * step.T_before_now);
+  for (std::size_t i = 0; i < uses.size(); ++i)
+    if (seen.unproven[i]) uses[i] = seen.moving[i] ? BeamUse::kNothing : BeamUse::kDrawing;
+  counters_.walker_beams += std::count(seen.moving.begin(), seen.moving.end(), true);
+  return uses;
+}
+
 /// The lidar's points; beams that the newest sweep calls smoke left out. The thicker the smoke, the more the radar's
 /// own points count: none in clear air, all there is where the lidar sees nothing. Each sweep is used once.
-ScanPoints Slam::Impl::points_of(const LaserScan& scan) {
+ScanPoints Slam::Impl::points_of(const LaserScan& scan, std::vector<BeamUse> uses) {
   const Twist2 twist = twist_for_straightening();
   if (!last_sweep_ || std::abs(to_seconds(scan.stamp - last_sweep_->stamp)) > kSweepIsFresh_s)
-    return surface_points(scan, params_.beams, twist, params_.points);
+    return surface_points(scan, params_.beams, twist, params_.points, uses);
   const std::optional<Pose2> T_odom_now = odometry_.at(scan.stamp);
   const Pose2 T_now_then = T_odom_now && T_odom_sweep_ ? T_odom_now->inverse() * *T_odom_sweep_ : Pose2();
   const EarlierScans earlier{T_odom_now ? &scan_memory_ : nullptr, T_odom_now.value_or(Pose2())};
   const SmokeView view = look_for_smoke(scan, params_.beams, *last_sweep_, T_now_then, params_.radar, earlier);
   if (T_odom_now) scan_memory_.remember(scan, params_.beams, *T_odom_now);
+  for (std::size_t i = 0; i < uses.size(); ++i)
+    if (view.beams[i]) uses[i] = BeamUse::kNothing;
   counters_.smoke_beams += std::count(view.beams.begin(), view.beams.end(), true);
   smoke_share_ += kSmokeMemory * (view.share - smoke_share_);
   counters_.smoke_share = smoke_share_;
-  ScanPoints points = surface_points(scan, params_.beams, twist, params_.points, view.beams);
+  ScanPoints points = surface_points(scan, params_.beams, twist, params_.points, uses);
   const double weight = std::clamp((smoke_share_ - kClearShare) / (kSmokeIsAll - kClearShare), 0.0, 1.0);
   if (!std::exchange(sweep_is_new_, false) || weight <= 0) return points;
   add_radar(points, surface_points(*last_sweep_, twist, params_.radar, params_.points), T_now_then, weight, params_);
@@ -188,16 +213,18 @@ PredictedStep Slam::Impl::predict(Stamp stamp) {
   return step;
 }
 
-ScanOutcome Slam::Impl::add_points(Stamp stamp, const std::string& robot, const ScanPoints& points) {
-  const PredictedStep step = predict(stamp);
+ScanOutcome Slam::Impl::add_points(Stamp stamp, const std::string& robot, const ScanPoints& points,
+                                   const PredictedStep& step) {
   const double seconds = last_stamp_ ? to_seconds(stamp - *last_stamp_) : 0;
   const Pose2 T_track_before = track_pose();
   const FrontEnd::Tracked tracked = front_->track(points, step);
+  const Pose2 tracked_step = T_track_before.inverse() * tracked.T_track_robot;
+  T_way_robot_ = T_way_robot_ * Pose2(step.by_odometry ? step.T_before_now.translation() : tracked_step.translation(),
+                                      tracked_step.heading());
   last_stamp_ = stamp;
   if (tracked.fate == ScanFate::kMatched && seconds > 1e-3) {
-    const Pose2 matched = T_track_before.inverse() * tracked.T_track_robot;
-    twist_ = smoothed(twist_, twist_of(matched, seconds), seconds);
-    if (step.by_odometry) wheel_error_.learn(step.T_before_now, matched, seconds);
+    twist_ = smoothed(twist_, twist_of(tracked_step, seconds), seconds);
+    if (step.by_odometry) wheel_error_.learn(step.T_before_now, tracked_step, seconds);
   }
   if (tracked.fate == ScanFate::kNewPiece) twist_.reset();  // it led astray
   count(tracked.fate);

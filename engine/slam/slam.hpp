@@ -40,6 +40,7 @@ struct SlamCounters {
   std::int64_t without_odometry = 0;  ///< predicted from the last velocity
   std::int64_t lost = 0;              ///< new pieces of map begun because nothing fitted for a while
   std::int64_t smoke_beams = 0;       ///< lidar echoes the radar saw through
+  std::int64_t walker_beams = 0;      ///< of people who walk: where they stand was seen free a little before
   double smoke_share = 0;             ///< newest estimate: of walls the radar sees, those the lidar does not
   std::int64_t relocated = 0;         ///< new pieces that were found again in the map, wherever it was
   std::int64_t loops_tried = 0;

@@ -110,6 +110,18 @@ Result<Ok> RadarParams::validate() const {
       .result();
 }
 
+Result<Ok> WalkerParams::validate() const {
+  return ParamCheck("WalkerParams")
+      .positive("widest_m", widest_m)
+      .positive("together_m", together_m)
+      .positive("apart_m", apart_m)
+      .positive("same_place_m", same_place_m)
+      .in_range("wheels_share", wheels_share, 0, 1)
+      .in_range("proof_m", proof_m, same_place_m, 20)
+      .in_range("most_share", most_share, 0, 1)
+      .result();
+}
+
 SlamParams SlamParams::for_radar() const {
   SlamParams params = *this;
   params.align = radar.align;
@@ -125,7 +137,7 @@ SlamParams SlamParams::for_radar() const {
 
 Result<Ok> SlamParams::validate() const {
   for (const Result<Ok>& part : {points.validate(), align.validate(), front_end.validate(), loops.validate(),
-                                 graph.validate(), radar.validate()})
+                                 graph.validate(), radar.validate(), walkers.validate()})
     if (!part) return part;
   return ParamCheck("SlamParams")
       .require("T_map_start", T_map_start.is_finite(), "must be finite")

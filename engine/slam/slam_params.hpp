@@ -118,6 +118,18 @@ struct RadarParams {
   Result<Ok> validate() const;
 };
 
+/// Telling people who walk from what stands.
+struct WalkerParams {
+  double widest_m = 0.9;      ///< a person, with his load
+  double together_m = 0.2;    ///< hits this near to each other are one thing
+  double apart_m = 0.3;       ///< it stands before what the beams beside it hit by at least this
+  double proof_m = 0.6;       ///< driven between two scans that show a thing at one place: then it stands
+  double same_place_m = 0.1;  ///< along a beam ...
+  double wheels_share = 0.1;  ///< ... and this share of the way between: what wheels may be off
+  double most_share = 0.5;    ///< where more of the hits are at small things these have to be believed
+  Result<Ok> validate() const;
+};
+
 /// One set for all maps. Lengths in metres, angles in radians, sigmas are standard deviations.
 struct SlamParams {
   BeamConvention beams;
@@ -128,6 +140,7 @@ struct SlamParams {
   LoopParams loops;
   GraphParams graph;
   RadarParams radar;
+  WalkerParams walkers;
   Result<Ok> validate() const;
   /// The same with matching as the radar alone needs it.
   SlamParams for_radar() const;

@@ -15,17 +15,19 @@ constexpr std::size_t kMostDrawnFreeEnds = 90;
 struct Beams {
   std::vector<Point2> hits;
   std::vector<double> step_m;  ///< distance to the next beam on a wall that is hit square
+  std::vector<Point2> drawn;   ///< the hits and those that are not to be matched
   std::vector<Point2> free_ends;
 };
 
 Beams read_beams(const LaserScan& scan, const BeamConvention& convention, const Twist2& twist, double farthest_m,
-                 const std::vector<bool>& smoke) {
+                 const std::vector<BeamUse>& uses) {
   Beams beams;
   const std::size_t count = distinct_beams(scan);
   beams.hits.reserve(count);
   beams.step_m.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (i < smoke.size() && smoke[i]) continue;
+    const BeamUse use = i < uses.size() ? uses[i] : BeamUse::kAll;
+    if (use == BeamUse::kNothing) continue;
     const BeamKind kind = classify(scan.ranges_m[i], scan, convention);
     if (kind == BeamKind::kUnknown) continue;
     const double angle = scan.angle_min_rad + static_cast<double>(i) * scan.angle_increment_rad;
@@ -36,6 +38,8 @@ Beams read_beams(const LaserScan& scan, const BeamConvention& convention, const 
       beams.free_ends.push_back(p);
       continue;
     }
+    beams.drawn.push_back(p);
+    if (use == BeamUse::kDrawing) continue;
     beams.hits.push_back(p);
     beams.step_m.push_back(range * std::abs(scan.angle_increment_rad));
   }
@@ -87,13 +91,13 @@ std::vector<Point2> thin(const std::vector<Point2>& points, double spacing_m, st
 }
 
 ScanPoints surface_points(const LaserScan& scan, const BeamConvention& convention, const Twist2& twist,
-                          const PointParams& params, const std::vector<bool>& smoke) {
-  const Beams beams = read_beams(scan, convention, twist, params.farthest_m, smoke);
+                          const PointParams& params, const std::vector<BeamUse>& uses) {
+  const Beams beams = read_beams(scan, convention, twist, params.farthest_m, uses);
   const Point2 p_sensor = scan.T_robot_laser.translation();
   ScanPoints points;
   for (const std::size_t i : select(beams.hits, p_sensor, params))
     points.surface.push_back(surface_at(beams, i, p_sensor, params));
-  points.hits_robot = std::make_shared<const std::vector<Point2>>(thin(beams.hits, 0.02, kMostDrawnHits));
+  points.hits_robot = std::make_shared<const std::vector<Point2>>(thin(beams.drawn, 0.02, kMostDrawnHits));
   points.free_ends_robot = std::make_shared<const std::vector<Point2>>(thin(beams.free_ends, 0.02, kMostDrawnFreeEnds));
   return points;
 }

@@ -33,11 +33,18 @@ struct Twist2 {
   Pose2 after(double seconds) const { return {velocity_mps * seconds, turn_radps * seconds}; }
 };
 
+/// What a beam may be used for.
+enum class BeamUse : std::uint8_t {
+  kAll,
+  kDrawing,  ///< not matched
+  kNothing,
+};
+
 /// Classifies, straightens (when the scan says how long a beam takes) and thins a scan; estimates surface directions.
-/// Free ends of beams to the maximum are cut at params.farthest_m. Beams in `smoke` (one flag a beam, may be empty) are
-/// left out altogether. Cost: linear in beams.
+/// Free ends of beams to the maximum are cut at params.farthest_m. `uses`: one a beam, or none
+/// at all. Cost: linear in beams.
 ScanPoints surface_points(const LaserScan& scan, const BeamConvention& convention, const Twist2& twist,
-                          const PointParams& params, const std::vector<bool>& smoke = {});
+                          const PointParams& params, const std::vector<BeamUse>& uses = {});
 
 /// Keeps, in order, points at least `spacing_m` from the one kept before, widening until at most `most` are left.
 std::vector<Point2> thin(const std::vector<Point2>& points, double spacing_m, std::size_t most);

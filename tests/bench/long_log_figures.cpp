@@ -13,6 +13,7 @@ constexpr int kLines = 4;  ///< corridors each way
 constexpr double kHalfCorridor_m = 1.1;
 constexpr double kScanEvery_m = 0.20, kScanEvery_rad = 0.20;
 constexpr double kSpeed_mps = 0.5, kTurn_radps = 0.8;
+constexpr double kPersonRadius_m = 0.25;
 constexpr double kRevisitWay_m = 20.0, kRevisitApart_m = 1.0, kRevisitTurn_rad = 0.8;
 
 struct Door {
@@ -180,33 +181,64 @@ void add_relations(LongLog& log) {
   log.relations.insert(log.relations.end(), log.revisits.begin(), log.revisits.end());
 }
 
-}  // namespace
-
-LongLog long_log(std::uint64_t seed, double way_m, bool alike) {
-  std::mt19937_64 random(seed);
-  const Site site = SiteBuilder(random, alike).take();
-  const SegmentWorld world(site.walls);
+LidarParams half_turn_lidar() {
   LidarParams lidar;
   lidar.beams = 180;
   lidar.angle_min_rad = -0.5 * kPi;
   lidar.field_of_view_rad = kPi;
   lidar.range_max_m = 30;
   lidar.skew = false;
+  return lidar;
+}
+
+/// Where somebody is who walks 1.5 m and more before the robot, each a metre before the last, left and right in turn.
+Point2 person_at(const Trajectory& poses, std::size_t k, int person) {
+  const auto ahead = static_cast<std::size_t>((1.5 + person) / kScanEvery_m);
+  const Pose2& at = poses[std::min(k + ahead, poses.size() - 1)].T_map_robot;
+  return at * Point2(0, person % 2 == 0 ? 0.35 : -0.35);
+}
+
+/// Beams end at a person who stands there, given in the scanner's frame.
+void put_before(LaserScan& scan, const Point2& person) {
+  for (std::size_t b = 0; b < scan.ranges_m.size(); ++b) {
+    const double angle = scan.angle_min_rad + static_cast<double>(b) * scan.angle_increment_rad;
+    const Point2 beam(std::cos(angle), std::sin(angle));
+    const double along = beam.dot(person), beside2 = person.squaredNorm() - along * along;
+    if (along <= 0 || beside2 > kPersonRadius_m * kPersonRadius_m) continue;
+    const double range = along - std::sqrt(kPersonRadius_m * kPersonRadius_m - beside2);
+    if (range > 0.1 && !(scan.ranges_m[b] < range)) scan.ranges_m[b] = static_cast<float>(range);
+  }
+}
+
+}  // namespace
+
+LongLog long_log(std::uint64_t seed, double way_m, const LongLogKind& kind) {
+  std::mt19937_64 random(seed);
+  const Site site = SiteBuilder(random, kind.alike).take();
+  const SegmentWorld world(site.walls);
+  const LidarParams lidar = half_turn_lidar();
+  const Trajectory poses = poses_along(walk(site, way_m, random));
   LongLog log;
-  log.truth = poses_along(walk(site, way_m, random));
   const double scale = 1 + normal(random, 0.01), bend = normal(random, 0.004);
-  Pose2 T_odom;
-  for (std::size_t k = 0; k < log.truth.size(); ++k) {
-    const Pose2& at = log.truth[k].T_map_robot;
+  Pose2 T_odom, T_world_scan;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Pose2& at = poses[k].T_map_robot;
     if (k > 0) {
-      const Pose2 step = log.truth[k - 1].T_map_robot.inverse() * at;
+      const Pose2 step = poses[k - 1].T_map_robot.inverse() * at;
       const double way = step.translation().norm(), turn = std::abs(step.heading());
-      T_odom =
-          T_odom * Pose2(scale * step.translation() + Point2(normal(random, 0.02 * std::sqrt(way)), 0),
-                         step.heading() + bend * way + normal(random, 0.03 * std::sqrt(turn) + 0.01 * std::sqrt(way)));
+      T_odom = T_odom * Pose2(scale * step.translation() + Point2(normal(random, 0.02 * std::sqrt(way)), 0),
+                              kind.turn_told * step.heading() + bend * way +
+                                  normal(random, 0.03 * std::sqrt(turn) + 0.01 * std::sqrt(way)));
     }
-    log.items.emplace_back(Odometry{log.truth[k].stamp, "robot", T_odom, 0, 0});
-    log.items.emplace_back(simulate_scan(world, {}, at, at, log.truth[k].stamp, lidar, random).scan);
+    log.items.emplace_back(Odometry{poses[k].stamp, "robot", T_odom, 0, 0});
+    LaserScan scan = simulate_scan(world, {}, at, at, poses[k].stamp, lidar, random).scan;
+    const Pose2 since = T_world_scan.inverse() * at;
+    if (k > 0 && since.translation().norm() < kind.scans_apart_m && std::abs(since.heading()) < kind.scans_apart_rad)
+      continue;
+    for (int person = 0; person < kind.people; ++person) put_before(scan, at.inverse() * person_at(poses, k, person));
+    log.items.emplace_back(std::move(scan));
+    log.truth.push_back(poses[k]);
+    T_world_scan = at;
   }
   add_relations(log);
   return log;

@@ -7,8 +7,8 @@
 // reading included; peak memory; time of the front end per scan.
 // Always: generated logs of a kilometre (with how many of the loops that were kept are wrong), the simulated twin of
 // Paper VI, and N random buildings full of smoke with the radar alone. --km chooses the seeds of the generated logs,
-// --rows the rows: names of logs in DIR, and km, alike, twin, smoke. Every log runs in a process of its own, so that
-// its memory is its own.
+// --rows the rows: names of logs in DIR, km, alike, thin, short-turn, crowd (see LongLogKind), twin, smoke. Every log
+// runs in a process of its own, so that its memory is its own.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -42,6 +42,13 @@ const std::map<std::string, std::string> kGoals{
     {"aces", "ATE 0.5 m"},
     {"edmonton", "ATE 0.5 m"},
     {"fhw", "ATE 0.5 m"}};
+
+const std::vector<std::pair<std::string, LongLogKind>> kLongLogKinds{
+    {"km", {}},
+    {"alike", {.alike = true}},
+    {"thin", {.scans_apart_m = 0.85, .scans_apart_rad = 0.5}},
+    {"short-turn", {.turn_told = 0.88}},
+    {"crowd", {.people = 4}}};
 
 double cpu_s() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -167,11 +174,11 @@ std::pair<std::size_t, double> wrong_loops(const PoseGraph& graph, const Traject
   return wrong;
 }
 
-void generated_log(int seed, bool alike) {
-  const LongLog log = long_log(static_cast<std::uint64_t>(seed), kLongWay_m, alike);
+void generated_log(int seed, const std::string& name, const LongLogKind& kind) {
+  const LongLog log = long_log(static_cast<std::uint64_t>(seed), kLongWay_m, kind);
   const double begin = cpu_s();
   const Played played = play(log.items);
-  print_row((alike ? "alike " : "km ") + std::to_string(seed), played, log.relations, log.truth, cpu_s() - begin);
+  print_row(name + " " + std::to_string(seed), played, log.relations, log.truth, cpu_s() - begin);
   std::size_t missed = 0;
   for (const PoseRelation& revisit : log.revisits) {
     const auto error = relation_error(played.slam.trajectory(), {revisit});
@@ -258,7 +265,7 @@ Options read_options(int argc, char** argv) {
   std::string km;
   smokemap::bench::BenchOptions("What SLAM reaches, beside what it should")
       .text("--data", options.data, "folder with logs")
-      .text("--rows", options.rows, "only these: names of logs, km, alike, twin, smoke")
+      .text("--rows", options.rows, "only these: names of logs, km, alike, thin, short-turn, crowd, twin, smoke")
       .number("--seeds", options.seeds, "buildings full of smoke")
       .text("--km", km, "FIRST,LAST seed of the generated logs")
       .read(argc, argv);
@@ -275,9 +282,9 @@ int main(int argc, char** argv) {
   if (!options.data.empty())
     for (const auto& [name, path] : logs_in(options.data))
       if (options.wants(name)) in_own_process([&name = name, &path = path] { recorded_log(path, name); });
-  for (const bool alike : {false, true})
-    for (int seed = options.first_km; seed <= options.last_km && options.wants(alike ? "alike" : "km"); ++seed)
-      in_own_process([=] { generated_log(seed, alike); });
+  for (const auto& [name, kind] : kLongLogKinds)
+    for (int seed = options.first_km; seed <= options.last_km && options.wants(name); ++seed)
+      in_own_process([&, seed] { generated_log(seed, name, kind); });
   if (options.wants("twin")) in_own_process(twin);
   if (options.wants("smoke")) in_own_process([&] { smoke(options.seeds); });
 }

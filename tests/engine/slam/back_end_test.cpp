@@ -149,6 +149,7 @@ TEST(SlamParams, NameTheFirstFieldOutOfRange) {
   refused([](SlamParams& p) { p.graph.pair_information = 0; }, "pair_information");
   refused([](SlamParams& p) { p.radar.farthest_m = 0.1; }, "farthest_m");
   refused([](SlamParams& p) { p.radar.lasting_within_m = 0; }, "lasting_within_m");
+  refused([](SlamParams& p) { p.walkers.proof_m = 0.01; }, "proof_m");
   refused([](SlamParams& p) { p.T_map_start = Pose2(Eigen::Vector2d(std::nan(""), 0), 0); }, "T_map_start");
 }
 
