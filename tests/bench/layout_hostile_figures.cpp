@@ -7,11 +7,15 @@
 #include <ctime>
 #include <functional>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <random>
 #include <span>
 #include <string>
 
 #include "layout/read_layout.hpp"
 #include "recording/picture_file.hpp"
+#include "simulation/plan_picture.hpp"
+#include "simulation/random_building.hpp"
 #include "tests/bench/layout_figures.hpp"
 #include "tests/support/cmyk_jpeg.hpp"
 #include "tests/support/pdf_files.hpp"
@@ -56,12 +60,19 @@ FileBytes cut(FileBytes bytes, double share) {
   return bytes;
 }
 
-/// Grainy as a camera's picture: what a decoder and a reader have to do depends on it.
+/// A drawn plan as a camera takes it, grain and all: what a decoder and a reader have to do depends on it.
 FileBytes photograph_of_plan(int width, int height) {
-  cv::Mat picture = plan_like(width, height), grain(height, width, CV_8UC3);
-  cv::RNG(1).fill(grain, cv::RNG::UNIFORM, 0, 12);
-  cv::subtract(picture, grain, picture);
-  return encode(".jpg", picture);
+  std::mt19937_64 random(1);
+  const auto building = random_building({}, random);
+  if (!building) return {};
+  PlanPictureParams params;
+  params.width_px = width;
+  params.photo = true;
+  const auto picture = draw_plan(*building, params, random);
+  if (!picture) return {};
+  cv::Mat photograph;
+  cv::resize(picture->photo, photograph, cv::Size(width, height));
+  return encode(".jpg", photograph);
 }
 
 double wall_seconds() {
