@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "slam/principal_line.hpp"
@@ -54,6 +55,22 @@ SurfacePoint surface_around(const EchoGrid& grid, const RadarEcho& echo, double 
   return point;
 }
 
+/// Of each azimuth the nearest echo that others lie beside.
+std::vector<const RadarEcho*> nearest_on_surfaces(const std::vector<RadarEcho>& echoes, int azimuths,
+                                                  const RadarParams& params) {
+  const EchoGrid crowded(echoes, params.spacing_m);
+  std::vector<bool> found(static_cast<std::size_t>(azimuths), false);
+  std::vector<const RadarEcho*> nearest;
+  for (const RadarEcho& echo : echoes) {
+    int support = 0;
+    crowded.around(echo.p, params.spacing_m, [&](const RadarEcho&) { ++support; });
+    if (support < 3 || found[static_cast<std::size_t>(echo.azimuth)]) continue;
+    found[static_cast<std::size_t>(echo.azimuth)] = true;
+    nearest.push_back(&echo);
+  }
+  return nearest;
+}
+
 }  // namespace
 
 std::vector<RadarEcho> strongest_echoes(const RadarSweep& sweep, const Twist2& twist, const RadarParams& params) {
@@ -86,15 +103,35 @@ std::vector<RadarEcho> strongest_echoes(const RadarSweep& sweep, const Twist2& t
   return echoes;
 }
 
+LaserScan nearest_surfaces(const RadarSweep& sweep, const RadarParams& params) {
+  LaserScan scan;
+  scan.stamp = sweep.stamp;
+  scan.robot = sweep.robot;
+  scan.angle_min_rad = sweep.azimuth_min_rad;
+  scan.angle_increment_rad = sweep.azimuth_increment_rad;
+  scan.range_min_m = params.nearest_m;
+  scan.range_max_m = params.farthest_m;
+  scan.T_robot_laser = sweep.T_robot_radar;
+  scan.ranges_m.assign(static_cast<std::size_t>(sweep.azimuths), std::numeric_limits<float>::infinity());
+  const std::vector<RadarEcho> echoes = strongest_echoes(sweep, {}, params);
+  for (const RadarEcho* echo : nearest_on_surfaces(echoes, sweep.azimuths, params))
+    scan.ranges_m[static_cast<std::size_t>(echo->azimuth)] = static_cast<float>(echo->range_m);
+  return scan;
+}
+
 ScanPoints surface_points(const RadarSweep& sweep, const Twist2& twist, const RadarParams& radar,
-                          const PointParams& points) {
-  const std::vector<RadarEcho> echoes = strongest_echoes(sweep, twist, radar);
-  const EchoGrid near(echoes, radar.surface_radius_m), crowded(echoes, radar.spacing_m);
+                          const PointParams& points, const std::vector<double>& left_out_m) {
+  std::vector<RadarEcho> echoes = strongest_echoes(sweep, twist, radar);
+  std::erase_if(echoes, [&](const RadarEcho& echo) {
+    const auto azimuth = static_cast<std::size_t>(echo.azimuth);
+    return azimuth < left_out_m.size() && left_out_m[azimuth] > 0 &&
+           std::abs(echo.range_m - left_out_m[azimuth]) < kApart_m;
+  });
+  const EchoGrid near(echoes, radar.surface_radius_m);
   const Point2 p_sensor = sweep.T_robot_radar.translation();
   ScanPoints out;
   out.by_radar = true;
   std::vector<Point2> hits;
-  std::vector<bool> drawn(static_cast<std::size_t>(sweep.azimuths), false);
   std::vector<const RadarEcho*> kept, by_weight;
   for (const RadarEcho& echo : echoes) by_weight.push_back(&echo);
   std::stable_sort(by_weight.begin(), by_weight.end(),
@@ -110,13 +147,7 @@ ScanPoints surface_points(const RadarSweep& sweep, const Twist2& twist, const Ra
                                      radar.surface_azimuths * echo->range_m * std::abs(sweep.azimuth_increment_rad));
     out.surface.push_back(surface_around(near, *echo, radius_m, p_sensor));
   }
-  for (const RadarEcho& echo : echoes) {
-    int support = 0;
-    crowded.around(echo.p, radar.spacing_m, [&](const RadarEcho&) { ++support; });
-    if (support < 3 || drawn[static_cast<std::size_t>(echo.azimuth)]) continue;
-    drawn[static_cast<std::size_t>(echo.azimuth)] = true;
-    hits.push_back(echo.p);
-  }
+  for (const RadarEcho* echo : nearest_on_surfaces(echoes, sweep.azimuths, radar)) hits.push_back(echo->p);
   out.hits_robot = std::make_shared<const std::vector<Point2>>(std::move(hits));
   out.free_ends_robot = std::make_shared<const std::vector<Point2>>();
   return out;

@@ -21,10 +21,15 @@ struct RadarEcho {
 /// to far within an azimuth.
 std::vector<RadarEcho> strongest_echoes(const RadarSweep& sweep, const Twist2& twist, const RadarParams& params);
 
+/// A sweep as a scan with a beam an azimuth, each ending at its nearest echo on a surface; infinite where there is
+/// none.
+LaserScan nearest_surfaces(const RadarSweep& sweep, const RadarParams& params);
+
 /// Weighted oriented surface points for the matcher: mean and main direction of the echoes around each thinned one.
 /// Hits to draw are echoes on a surface, nearest of their azimuth; a radar clears nothing: no free ends.
 /// Source: CFEAR (Adolfsson et al., T-RO 2023), lengths for rooms instead of streets.
+/// @param left_out_m  of each azimuth the range at which echoes are left out, 0 = none; or nothing at all
 ScanPoints surface_points(const RadarSweep& sweep, const Twist2& twist, const RadarParams& radar,
-                          const PointParams& points);
+                          const PointParams& points, const std::vector<double>& left_out_m = {});
 
 }  // namespace smokemap

@@ -62,7 +62,8 @@ const char* to_string(ScanFate fate) {
 
 class Slam::Impl {
  public:
-  Impl(const SlamParams& params, GraphWork work) : params_(params), work_(work), walkers_(params.walkers) {}
+  Impl(const SlamParams& params, GraphWork work)
+      : params_(params), work_(work), walkers_(params.walkers), radar_walkers_(params.radar.walkers) {}
 
   void add_odometry(const Odometry& reading) {
     ++counters_.odometry;
@@ -89,6 +90,8 @@ class Slam::Impl {
   PredictedStep predict(Stamp stamp);
   void begin();
   ScanPoints points_of(const LaserScan& scan, std::vector<BeamUse> uses);
+  bool is_sparse(const PredictedStep& step, double gate_m) const;
+  std::vector<double> walkers_in(const RadarSweep& sweep, const Pose2& T_way_robot);
   std::vector<BeamUse> without_walkers(const LaserScan& scan, const HitRanges& hits, const PredictedStep& step);
   Pose2 track_pose() const { return front_ ? front_->T_track_robot() : Pose2(); }
   Pose2 pose_of(const Anchor& anchor) const;
@@ -108,8 +111,9 @@ class Slam::Impl {
   std::vector<float> last_ranges_;
   std::optional<RadarSweep> last_sweep_;
   std::optional<Pose2> T_odom_sweep_;
+  std::vector<double> sweep_walkers_m_;  ///< of the newest sweep, see walkers_in
   bool sweep_is_new_ = false;
-  Walkers walkers_;
+  Walkers walkers_, radar_walkers_;
   Pose2 T_way_robot_;       ///< by the wheels' way and the matched headings
   ScanMemory scan_memory_;  ///< of scans beside a radar
   double smoke_share_ = 0;
@@ -148,14 +152,17 @@ Result<ScanOutcome> Slam::Impl::add_sweep(const RadarSweep& sweep) {
   ++counters_.sweeps;
   if (lidar_stamp_ && to_seconds(sweep.stamp - *lidar_stamp_) < kLidarIsSilent_s) {
     last_sweep_ = sweep;
+    sweep_walkers_m_ = walkers_in(sweep, T_way_robot_);
     sweep_is_new_ = true;
     T_odom_sweep_ = odometry_.at(sweep.stamp);
     return ScanOutcome{sweep.stamp, ScanFate::kMatched, latest(), std::nullopt, 0};
   }
   begin();
+  const PredictedStep step = predict(sweep.stamp);
+  std::vector<double> walkers_m = walkers_in(sweep, T_way_robot_ * step.T_before_now);
+  if (is_sparse(step, params_.radar.align.gate_m)) walkers_m.clear();
   return add_points(sweep.stamp, sweep.robot,
-                    surface_points(sweep, twist_for_straightening(), params_.radar, params_.points),
-                    predict(sweep.stamp));
+                    surface_points(sweep, twist_for_straightening(), params_.radar, params_.points, walkers_m), step);
 }
 
 void Slam::Impl::begin() {
@@ -164,13 +171,28 @@ void Slam::Impl::begin() {
   worker_ = std::make_unique<GraphWorker>(params_, work_);
 }
 
+/// Who has walked on so far since the scan before misleads no match.
+bool Slam::Impl::is_sparse(const PredictedStep& step, double gate_m) const {
+  return step.T_before_now.translation().norm() > gate_m ||
+         std::abs(step.T_before_now.heading()) > params_.front_end.sparse_step_rad;
+}
+
+/// Of each azimuth the range at which somebody may be who walks. The radar's nearest surfaces are a scan, too.
+std::vector<double> Slam::Impl::walkers_in(const RadarSweep& sweep, const Pose2& T_way_robot) {
+  const LaserScan nearest = nearest_surfaces(sweep, params_.radar);
+  HitRanges hits(nearest, {});
+  const WalkerView seen = radar_walkers_.look(nearest, hits, T_way_robot);
+  std::vector<double> walkers_m(nearest.ranges_m.size(), 0);
+  for (std::size_t i = 0; i < walkers_m.size(); ++i)
+    if (seen.unproven[i]) walkers_m[i] = hits.at(static_cast<std::ptrdiff_t>(i));
+  radar_walkers_.remember(nearest, std::move(hits), T_way_robot);
+  return walkers_m;
+}
+
 std::vector<BeamUse> Slam::Impl::without_walkers(const LaserScan& scan, const HitRanges& hits,
                                                  const PredictedStep& step) {
   std::vector<BeamUse> uses(scan.ranges_m.size(), BeamUse::kAll);
-  // Who has walked on by so much since the scan before misleads no match.
-  if (step.T_before_now.translation().norm() > 0.5 * params_.walkers.proof_m ||
-      std::abs(step.T_before_now.heading()) > params_.front_end.sparse_step_rad)
-    return uses;
+  if (is_sparse(step, params_.align.gate_m)) return uses;
   const WalkerView seen = walkers_.look(scan, hits, T_way_robot_ * step.T_before_now);
   for (std::size_t i = 0; i < uses.size(); ++i)
     if (seen.unproven[i]) uses[i] = seen.moving[i] ? BeamUse::kNothing : BeamUse::kDrawing;
@@ -197,7 +219,8 @@ ScanPoints Slam::Impl::points_of(const LaserScan& scan, std::vector<BeamUse> use
   ScanPoints points = surface_points(scan, params_.beams, twist, params_.points, uses);
   const double weight = std::clamp((smoke_share_ - kClearShare) / (kSmokeIsAll - kClearShare), 0.0, 1.0);
   if (!std::exchange(sweep_is_new_, false) || weight <= 0) return points;
-  add_radar(points, surface_points(*last_sweep_, twist, params_.radar, params_.points), T_now_then, weight, params_);
+  add_radar(points, surface_points(*last_sweep_, twist, params_.radar, params_.points, sweep_walkers_m_), T_now_then,
+            weight, params_);
   return points;
 }
 

@@ -90,6 +90,7 @@ Result<Ok> GraphParams::validate() const {
 
 Result<Ok> RadarParams::validate() const {
   if (const Result<Ok> part = align.validate(); !part) return part;
+  if (const Result<Ok> part = walkers.validate(); !part) return part;
   return ParamCheck("RadarParams")
       .in_range("strongest", strongest, 1, 200)
       .positive("least_power", least_power)

@@ -90,6 +90,18 @@ struct GraphParams {
   Result<Ok> validate() const;
 };
 
+/// Telling people who walk from what stands.
+struct WalkerParams {
+  double widest_m = 0.9;      ///< a person, with his load
+  double together_m = 0.2;    ///< hits this near to each other are one thing
+  double apart_m = 0.3;       ///< it stands before what the beams beside it hit by at least this
+  double proof_m = 0.6;       ///< driven between two scans that show a thing at one place: then it stands
+  double same_place_m = 0.1;  ///< along a beam ...
+  double wheels_share = 0.1;  ///< ... and this share of the way between: what wheels may be off
+  double most_share = 0.5;    ///< where more of the hits are at small things these have to be believed
+  Result<Ok> validate() const;
+};
+
 /// Power over azimuth and range to points, and how they are matched where the radar works alone. Walls are a beam's
 /// width wide and speckled: gates, cells and expectations are several times those of a lidar.
 struct RadarParams {
@@ -115,18 +127,7 @@ struct RadarParams {
   double good_score = 0.45, least_score = 0.25, fair_score = 0.12;  ///< as in FrontEndParams
   double least_search_score = 0.50, least_align_score = 0.45;       ///< as in LoopParams
   double least_pair_score = 0.30;                                   ///< as in GraphParams
-  Result<Ok> validate() const;
-};
-
-/// Telling people who walk from what stands.
-struct WalkerParams {
-  double widest_m = 0.9;      ///< a person, with his load
-  double together_m = 0.2;    ///< hits this near to each other are one thing
-  double apart_m = 0.3;       ///< it stands before what the beams beside it hit by at least this
-  double proof_m = 0.6;       ///< driven between two scans that show a thing at one place: then it stands
-  double same_place_m = 0.1;  ///< along a beam ...
-  double wheels_share = 0.1;  ///< ... and this share of the way between: what wheels may be off
-  double most_share = 0.5;    ///< where more of the hits are at small things these have to be believed
+  WalkerParams walkers{.widest_m = 1.4, .together_m = 0.3, .apart_m = 0.5, .same_place_m = 0.2};
   Result<Ok> validate() const;
 };
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "slam/radar_points.hpp"
@@ -12,32 +13,12 @@
 namespace smokemap {
 namespace {
 
-/// A radar turn in the toy world: an echo of 25 dB at each wall with exponential speckle, receiver noise of mean 1.
-RadarSweep sweep_at(const std::vector<Segment2>& walls, const Pose2& at, double seconds, std::mt19937_64& random) {
-  RadarSweep sweep;
-  sweep.stamp = from_seconds(seconds);
-  sweep.robot = "robot";
-  sweep.duration_s = 0;
-  sweep.azimuths = 200;
-  sweep.azimuth_increment_rad = 2 * kPi / 200;
-  sweep.bins = 320;
-  sweep.range_resolution_m = 0.0375;
-  sweep.power.resize(200 * 320);
-  for (float& p : sweep.power) p = static_cast<float>(exponential(random));
-  for (std::size_t a = 0; a < 200; ++a) {
-    const double r = test::cast(walls, at.translation(), at.heading() + 2 * kPi * static_cast<double>(a) / 200, 12);
-    const auto bin = static_cast<std::size_t>(std::lround(r / sweep.range_resolution_m));
-    if (bin + 1 < 320) sweep.power[a * 320 + bin] += static_cast<float>(300 * (0.2 + exponential(random)));
-  }
-  return sweep;
-}
-
 TEST(RadarEchoes, AreTheStrongestOfEachAzimuth) {
   std::mt19937_64 random(1);
   const auto walls = test::ring_of_corridors();
   const Pose2 at(13, 1, 0.4);
   const RadarParams params;
-  const auto echoes = strongest_echoes(sweep_at(walls, at, 0, random), {}, params);
+  const auto echoes = strongest_echoes(test::sweep_at(walls, at, 0, random), {}, params);
   std::vector<int> per_azimuth(200, 0);
   int on_wall = 0;
   for (const RadarEcho& echo : echoes) {
@@ -54,7 +35,7 @@ TEST(RadarPoints, LieOnWallsAndClearNothing) {
   std::mt19937_64 random(2);
   const auto walls = test::ring_of_corridors();
   const Pose2 at(6, 1, 0);
-  const ScanPoints points = surface_points(sweep_at(walls, at, 0, random), {}, {}, {});
+  const ScanPoints points = surface_points(test::sweep_at(walls, at, 0, random), {}, {}, {});
   int oriented = 0, along_wall = 0;
   for (const SurfacePoint& point : points.surface) {
     if (!point.oriented()) continue;
@@ -67,6 +48,43 @@ TEST(RadarPoints, LieOnWallsAndClearNothing) {
   EXPECT_TRUE(points.free_ends_robot->empty());
 }
 
+TEST(RadarPoints, OfTheNearestSurfacesAreAScan) {
+  std::mt19937_64 random(7);
+  const auto walls = test::ring_of_corridors();
+  const Pose2 at(6, 1, 0.3);
+  const LaserScan scan = nearest_surfaces(test::sweep_at(walls, at, 0, random), {});
+  ASSERT_EQ(scan.ranges_m.size(), 200u);
+  int told = 0, right = 0;
+  for (std::size_t a = 0; a < scan.ranges_m.size(); ++a) {
+    const double angle = scan.angle_min_rad + static_cast<double>(a) * scan.angle_increment_rad;
+    const double truth = test::cast(walls, at.translation(), at.heading() + angle, 12);
+    if (!std::isfinite(scan.ranges_m[a])) continue;
+    ++told;
+    right += std::abs(static_cast<double>(scan.ranges_m[a]) - truth) < 0.06;
+  }
+  EXPECT_GT(told, 100);
+  EXPECT_GT(right, 0.97 * told);
+}
+
+TEST(RadarPoints, LeaveOutWhatIsToBeLeftOut) {
+  std::mt19937_64 random(8);
+  const auto walls = test::ring_of_corridors();
+  const RadarSweep sweep = test::sweep_at(walls, Pose2(6, 1, 0), 0, random);
+  const LaserScan nearest = nearest_surfaces(sweep, {});
+  std::vector<double> left_out_m(200, 0);
+  for (std::size_t a = 30; a < 70; ++a)  // a near wall
+    if (std::isfinite(nearest.ranges_m[a])) left_out_m[a] = static_cast<double>(nearest.ranges_m[a]);
+  const auto in_sector = [](const ScanPoints& points) {
+    return std::count_if(points.surface.begin(), points.surface.end(), [](const SurfacePoint& point) {
+      const double angle = std::atan2(point.p.y(), point.p.x());
+      return angle > 31 * 2 * kPi / 200 && angle < 69 * 2 * kPi / 200;
+    });
+  };
+  const ScanPoints all = surface_points(sweep, {}, {}, {}), left = surface_points(sweep, {}, {}, {}, left_out_m);
+  EXPECT_GE(in_sector(all), 3);
+  EXPECT_EQ(in_sector(left), 0);
+}
+
 TEST(RadarSlam, ClosesTheLoopWithoutAnyLidar) {
   std::mt19937_64 random(3);
   const auto walls = test::ring_of_corridors();
@@ -76,7 +94,7 @@ TEST(RadarSlam, ClosesTheLoopWithoutAnyLidar) {
   double seconds = 0;
   for (const Pose2& at : test::rounds(2, 0.4)) {
     slam.add_odometry(wheels.read(at, seconds));
-    ASSERT_TRUE(slam.add_sweep(sweep_at(walls, at, seconds, random)));
+    ASSERT_TRUE(slam.add_sweep(test::sweep_at(walls, at, seconds, random)));
     truth.push_back({from_seconds(seconds), at, Eigen::Matrix3d::Zero()});
     seconds += 0.5;
   }
@@ -91,7 +109,7 @@ TEST(SmokeBeams, AreThoseTheRadarSeesThrough) {
   std::mt19937_64 random(4);
   const auto walls = test::ring_of_corridors();
   const Pose2 at(13, 1, 0);
-  const RadarSweep sweep = sweep_at(walls, at, 0, random);
+  const RadarSweep sweep = test::sweep_at(walls, at, 0, random);
   LaserScan clear = test::scan_at(walls, at, 0, random), smoky = clear;
   int in_smoke = 0;
   for (std::size_t i = 90; i < 180; ++i)
@@ -115,7 +133,7 @@ TEST(SmokeBeams, DrawNoWallsIntoTheMap) {
   LaserScan scan = test::scan_at(walls, at, 10, random);
   Slam slam;
   ASSERT_TRUE(slam.add_scan(scan));
-  ASSERT_TRUE(slam.add_sweep(sweep_at(walls, at, 10, random)));
+  ASSERT_TRUE(slam.add_sweep(test::sweep_at(walls, at, 10, random)));
   EXPECT_EQ(slam.trajectory().size(), 1u);  // the sweep is no pose of its own beside a lidar
   scan.stamp += from_seconds(0.1);
   for (std::size_t i = 90; i < 180; ++i)
@@ -128,7 +146,7 @@ TEST(SmokeShare, IsSmallInClearAirAndAllWhereTheLidarSeesNothing) {
   std::mt19937_64 random(6);
   const auto walls = test::ring_of_corridors();
   const Pose2 at(13, 1, 0.3);
-  const RadarSweep sweep = sweep_at(walls, at, 0, random);
+  const RadarSweep sweep = test::sweep_at(walls, at, 0, random);
   LaserScan scan = test::scan_at(walls, at, 0, random);
   EXPECT_LT(look_for_smoke(scan, {}, sweep, {}, {}).share, 0.3);
   scan.ranges_m.assign(scan.ranges_m.size(), std::numeric_limits<float>::infinity());
@@ -146,7 +164,7 @@ double ate_through_smoke(bool with_radar) {
   for (std::size_t i = 0; i < way.size(); ++i) {
     const double seconds = 0.4 * static_cast<double>(i);
     slam.add_odometry(wheels.read(way[i], seconds));
-    const RadarSweep sweep = sweep_at(walls, way[i], seconds, random);
+    const RadarSweep sweep = test::sweep_at(walls, way[i], seconds, random);
     if (with_radar) (void)slam.add_sweep(sweep).ok();
     LaserScan scan = test::scan_at(walls, way[i], seconds, random, 120);
     if (i > way.size() / 4 && i < 3 * way.size() / 4)
@@ -195,7 +213,7 @@ struct SensorRound {
       const double seconds = 0.5 * static_cast<double>(i);
       slam.add_odometry(wheels.read(way[i], seconds));
       const auto [lidar, radar] = sees(i);
-      if (radar) (void)slam.add_sweep(sweep_at(walls, way[i], seconds, random)).ok();
+      if (radar) (void)slam.add_sweep(test::sweep_at(walls, way[i], seconds, random)).ok();
       if (lidar) (void)slam.add_scan(test::scan_at(walls, way[i], seconds, random)).ok();
       truth.push_back({from_seconds(seconds), way[i], Eigen::Matrix3d::Zero()});
     }
@@ -252,7 +270,7 @@ TEST(RadarGhosts, ThatMoveWithTheRobotAreNotDrawn) {
                         [&](const Segment2& wall) { return distance(wall, p_world) < 0.35; });
   };
   for (std::size_t i = 0; i < way.size(); ++i) {
-    RadarSweep sweep = sweep_at(walls, way[i], 0.5 * static_cast<double>(i), random);
+    RadarSweep sweep = test::sweep_at(walls, way[i], 0.5 * static_cast<double>(i), random);
     // A wall met flat shows another one instead, through it: a patch of azimuths at a range that changes.
     const std::size_t from = uniform_index(random, 190), bin = 120 + uniform_index(random, 150);
     for (std::size_t a = from; a < from + 10; ++a) {

@@ -6,6 +6,7 @@
 #include "geometry/segment2.hpp"
 #include "maps/laser_scan.hpp"
 #include "maps/odometry.hpp"
+#include "maps/radar_sweep.hpp"
 
 namespace smokemap::test {
 
@@ -61,6 +62,27 @@ inline LaserScan scan_at(const std::vector<Segment2>& walls, const Pose2& T_worl
                                    : std::numeric_limits<float>::infinity());
   }
   return scan;
+}
+
+/// A radar turn in the toy world: an echo of 25 dB at each wall with exponential speckle, receiver noise of mean 1.
+inline RadarSweep sweep_at(const std::vector<Segment2>& walls, const Pose2& at, double seconds,
+                           std::mt19937_64& random) {
+  RadarSweep sweep;
+  sweep.stamp = from_seconds(seconds);
+  sweep.robot = "robot";
+  sweep.duration_s = 0;
+  sweep.azimuths = 200;
+  sweep.azimuth_increment_rad = 2 * kPi / 200;
+  sweep.bins = 320;
+  sweep.range_resolution_m = 0.0375;
+  sweep.power.resize(200 * 320);
+  for (float& p : sweep.power) p = static_cast<float>(exponential(random));
+  for (std::size_t a = 0; a < 200; ++a) {
+    const double r = cast(walls, at.translation(), at.heading() + 2 * kPi * static_cast<double>(a) / 200, 12);
+    const auto bin = static_cast<std::size_t>(std::lround(r / sweep.range_resolution_m));
+    if (bin + 1 < 320) sweep.power[a * 320 + bin] += static_cast<float>(300 * (0.2 + exponential(random)));
+  }
+  return sweep;
 }
 
 /// Rounds through the middle of the corridors: a pose every `step_m`, corners turned on the spot in steps of 0.2 rad.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "slam/slam.hpp"
 #include "tests/engine/slam/toy_world.hpp"
@@ -148,33 +149,40 @@ TEST(Walkers, NeedNoParametersOutOfRange) {
   EXPECT_FALSE(params.validate()) << "whoever walks would be taken for the same";
 }
 
-/// 15 m along a corridor that says nothing along itself.
-Pose2 driven(double people_ahead_m, bool with_people, std::uint64_t seed) {
+/// Where SLAM is after 15 m along a corridor that says nothing along itself, by the lidar or by the radar alone.
+/// @param people_at_m  where two people walk who keep their place, from the robot; nothing: nobody
+Pose2 driven(std::optional<double> people_at_m, bool by_radar, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   test::Wheels wheels(1.01, 0, 0.02, seed);
   Slam slam(SlamParams{});
+  const double step_m = by_radar ? 0.2 : kStep_m;
   double seconds = 0;
-  for (double x = 0; x <= 15; x += kStep_m, seconds += 0.2) {
+  for (double x = 0; x <= 15; x += step_m, seconds += 2 * step_m) {
     std::vector<Segment2> walls = bare_corridor();
-    if (with_people) {
-      add_disc(walls, {x + people_ahead_m, 0.3}, 0.25);
-      add_disc(walls, {x + people_ahead_m + 1, -0.3}, 0.25);
+    if (people_at_m) {
+      add_disc(walls, {x + *people_at_m, 0.3}, 0.25);
+      add_disc(walls, {x + *people_at_m + 1, -0.3}, 0.25);
     }
     const Pose2 at(x, 0, 0);
     slam.add_odometry(wheels.read(at, seconds));
-    EXPECT_TRUE(slam.add_scan(test::scan_at(walls, at, seconds, random)));
+    if (by_radar)
+      EXPECT_TRUE(slam.add_sweep(test::sweep_at(walls, at, seconds, random)));
+    else
+      EXPECT_TRUE(slam.add_scan(test::scan_at(walls, at, seconds, random)));
   }
   return slam.latest_pose().T_map_robot;
 }
 
 TEST(Slam, IsNotHeldBackByPeopleWhoWalkBeforeOrBehindTheRobot) {
-  for (const double ahead : {1.5, -2.5})
-    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-      const Pose2 alone = driven(ahead, false, seed), led = driven(ahead, true, seed);
-      EXPECT_NEAR(alone.translation().x(), 15, 0.6) << "what the wheels are off";
-      EXPECT_NEAR(led.translation().x(), alone.translation().x(), 0.15) << "ahead " << ahead << ", seed " << seed;
-      EXPECT_NEAR(led.heading(), 0, 0.01);
-    }
+  for (const bool by_radar : {false, true})
+    for (const double at_m : {1.5, -2.5})
+      for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+        const Pose2 alone = driven({}, by_radar, seed), led = driven(at_m, by_radar, seed);
+        EXPECT_NEAR(alone.translation().x(), 15, 0.6) << "what the wheels are off";
+        EXPECT_NEAR(led.translation().x(), alone.translation().x(), by_radar ? 0.3 : 0.15)
+            << (by_radar ? "radar" : "lidar") << ", people at " << at_m << ", seed " << seed;
+        EXPECT_NEAR(led.heading(), 0, by_radar ? 0.03 : 0.01);
+      }
 }
 
 }  // namespace
