@@ -111,9 +111,7 @@ Result<Ok> AutoCompleteGraph::Impl::correct(Learnt& l, bool warm, const Progress
     progress.tell(0.6 + 0.3 * (k + 1) / params.rounds, "correcting plan and map");
   }
   // What still bends the plan is something before a wall: that wall is looked for only where all else puts it.
-  std::vector<bool> tense = tense_walls(*plan, l.state, params);
-  const std::vector<bool> twisted = twisted_walls(*plan, l.state, last.links);
-  for (std::size_t w = 0; w < tense.size(); ++w) tense[w] = tense[w] || twisted[w];
+  const std::vector<bool> tense = tense_walls(*plan, l.state, params);
   if (std::none_of(tense.begin(), tense.end(), [](bool t) { return t; })) return Ok{};
   if (const auto done = release_tense(l, last, tense, progress); !done) return done.error();
   const double sharpness = std::pow(0.6, params.rounds);

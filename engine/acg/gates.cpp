@@ -12,8 +12,6 @@ constexpr double kNearest_m = 0.20;
 constexpr double kPerMetre = 0.30;  ///< three sigma of ten percent
 constexpr double kSideways = 0.10;  ///< how much less a known wall tells when it lies beside, not opposite
 constexpr double kNothingKnown_m = 0.5;
-constexpr double kTwistedOver_m = 1.0;
-constexpr double kTwisted_rad = 0.044;
 constexpr double kTense = 3;  ///< sigmas
 
 /// How many metres of unknown stretch lie between two walls of like direction, in the drawing.
@@ -60,21 +58,6 @@ std::vector<bool> tense_walls(const PlanModel& plan, const GraphState& state, co
     }
   }
   return tense;
-}
-
-std::vector<bool> twisted_walls(const PlanModel& plan, const GraphState& state, const std::vector<PieceLink>& links) {
-  std::vector<double> turned(plan.walls.size(), 0), length_m(turned);
-  for (const PieceLink& link : links) {
-    const auto w = static_cast<std::size_t>(link.wall);
-    const double heading = state.pose(link.node).heading() + link.part_robot.heading();
-    const double turn = 0.5 * wrap_angle(2 * (heading - state.segment(plan.walls[w]).heading()));
-    turned[w] += link.weight * link.part_robot.length() * turn;
-    length_m[w] += link.weight * link.part_robot.length();
-  }
-  std::vector<bool> out;
-  for (std::size_t w = 0; w < turned.size(); ++w)
-    out.push_back(length_m[w] > kTwistedOver_m && std::abs(turned[w]) > kTwisted_rad * length_m[w]);
-  return out;
 }
 
 bool mature(const PlanEdge& wall, double linked_m, const AcgParams& params) {

@@ -17,10 +17,6 @@ std::vector<double> wall_gates_m(const PlanModel& plan, const std::vector<WallSt
 /// longer or shorter by as much, with those that meet one end of such a wall and so hold it.
 std::vector<bool> tense_walls(const PlanModel& plan, const GraphState& state, const AcgParams& params);
 
-/// Walls that hang between two faces: what is linked to them, each by itself, runs in another direction than they do
-/// (by more than two and a half degrees, over a metre or more). One of the faces is a door leaf, or a cupboard.
-std::vector<bool> twisted_walls(const PlanModel& plan, const GraphState& state, const std::vector<PieceLink>& links);
-
 /// Mean over walls of how many squared sigmas their length and direction differ from the drawing.
 double plan_tension(const PlanModel& plan, const GraphState& state, const AcgParams& params);
 

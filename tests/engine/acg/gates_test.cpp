@@ -108,28 +108,6 @@ TEST(Tension, IsFeltByAWallThatWasSquashedAndByThoseThatHoldItsEnds) {
   }
 }
 
-// A wall hung between its own far end and a door leaf that stood 20 cm before its near one: corner .20 m off at 15 mm.
-TEST(TwistedWalls, AreThoseWhoseFacesAllRunInAnotherDirection) {
-  const PlanModel plan = upright_walls({0});
-  for (const double turned : {0.0, 0.03, 0.06, -0.06}) {
-    GraphState state;
-    for (const Point2& p : plan.corners) {
-      const Point2 q = Pose2(0, 0, turned) * p;
-      state.corners.push_back({q.x(), q.y()});
-    }
-    state.poses = {{1, 2, 0.4}};
-    const Pose2 T_robot_map = state.pose(0).inverse();
-    const auto face = [&](double from, double to, double beside) {
-      PieceLink link;
-      link.part_robot = {T_robot_map * Point2(beside, to), T_robot_map * Point2(beside, from)};
-      return link;
-    };
-    const bool twisted = std::abs(turned) > 0.05;
-    EXPECT_EQ(twisted_walls(plan, state, {face(0.2, 1, 0.05), face(3, 3.9, 0.25)}), std::vector<bool>{twisted});
-    EXPECT_EQ(twisted_walls(plan, state, {face(0.2, 1, 0.05)}), std::vector<bool>{false}) << "too little to say so";
-  }
-}
-
 TEST(SeenOnLines, AddsUpTheConfirmedWallsThatRunAlongALine) {
   const PlanModel plan = upright_walls({0, 2, 5});
   using enum WallState;
