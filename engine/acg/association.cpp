@@ -8,8 +8,6 @@ namespace {
 
 constexpr double kBeyondEnd_m = 0.15;  ///< a piece may reach this far past a wall's end
 constexpr double kMinOverlap_m = 0.20;
-constexpr double kBeside_m =
-    0.50;  ///< or half of the shorter: less beside it, the piece is of what comes after the wall
 constexpr double kEvidenceBin_m = 0.10;
 
 struct Candidate {
@@ -39,8 +37,6 @@ bool candidate(const Segment2& piece_map, const Segment2& piece_robot, const Poi
   out.to = std::clamp(std::max(t_0, t_1), 0.0, 1.0);
   const double overlap = (out.to - out.from) * piece_map.length();
   if (overlap < std::min(kMinOverlap_m, 0.6 * length)) return false;
-  const double beside = std::min(std::max(s_a, s_b), length) - std::max(std::min(s_a, s_b), 0.0);
-  if (beside < std::min(kBeside_m, 0.5 * std::min(length, piece_map.length()))) return false;
   out.link.part_robot = {piece_robot.a + out.from * (piece_robot.b - piece_robot.a),
                          piece_robot.a + out.to * (piece_robot.b - piece_robot.a)};
   out.link.side = n.dot(robot - wall.a) >= 0 ? 1.0 : -1.0;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "acg/association.hpp"
-#include "acg/gates.hpp"
 #include "acg/graph_impl.hpp"
 #include "acg/new_walls.hpp"
 #include "acg/wall_evidence.hpp"
@@ -110,15 +109,6 @@ Result<Ok> AutoCompleteGraph::Impl::correct(Learnt& l, bool warm, const Progress
     if (const auto done = round(l, nodes.spaced(), sharpness, free_poses, progress, &last); !done) return done.error();
     progress.tell(0.6 + 0.3 * (k + 1) / params.rounds, "correcting plan and map");
   }
-  // What still bends the plan is something before a wall: that wall is looked for only where all else puts it.
-  const std::vector<bool> tense = tense_walls(*plan, l.state, params);
-  if (std::none_of(tense.begin(), tense.end(), [](bool t) { return t; })) return Ok{};
-  if (const auto done = release_tense(l, last, tense, progress); !done) return done.error();
-  const double sharpness = std::pow(0.6, params.rounds);
-  if (const auto done = round(l, nodes.spaced(), sharpness, {0, nodes.size()}, progress, &last, tense); !done)
-    return done.error();
-  const std::vector<double> no_ends(plan->walls.size(), 0);
-  judge_walls(l.beams.read(nodes.views(), nodes.spaced(), *plan, l.state, no_ends).walls, l);
   return Ok{};
 }
 

@@ -12,7 +12,6 @@ constexpr double kNearest_m = 0.20;
 constexpr double kPerMetre = 0.30;  ///< three sigma of ten percent
 constexpr double kSideways = 0.10;  ///< how much less a known wall tells when it lies beside, not opposite
 constexpr double kNothingKnown_m = 0.5;
-constexpr double kTense = 3;  ///< sigmas
 
 /// How many metres of unknown stretch lie between two walls of like direction, in the drawing.
 double apart_m(const PlanModel& plan, const PlanEdge& wall, const PlanEdge& known) {
@@ -39,23 +38,13 @@ double plan_tension(const PlanModel& plan, const GraphState& state, const AcgPar
 }
 
 std::vector<bool> tense_walls(const PlanModel& plan, const GraphState& state, const AcgParams& params) {
-  std::vector<bool> tense(plan.walls.size(), false);
-  const double pen = std::sqrt(2.0) * params.sigma_corner_draw_m, scale = std::exp(state.log_scale);
-  for (std::size_t w = 0; w < plan.walls.size(); ++w) {
-    const PlanEdge& wall = plan.walls[w];
+  std::vector<bool> tense;
+  for (const PlanEdge& wall : plan.walls) {
     const Segment2 now = state.segment(wall);
-    const Point2 d = Pose2(0, 0, -state.turn - wall.heading_rad) * Point2(now.b - now.a);
-    tense[w] = tense[w] || std::abs(d.y()) > kTense * std::hypot(params.sigma_wall_turn_rad * wall.length_m, pen);
-    if (std::abs(d.x() - scale * wall.length_m) <=
-        kTense * std::hypot(params.sigma_wall_log_length * wall.length_m, pen))
-      continue;
-    // Its ends are held by the walls that meet it there.
-    for (std::size_t o = 0; o < plan.walls.size(); ++o) {
-      const PlanEdge& other = plan.walls[o];
-      const bool meets = other.corner_a == wall.corner_a || other.corner_a == wall.corner_b ||
-                         other.corner_b == wall.corner_a || other.corner_b == wall.corner_b;
-      tense[o] = tense[o] || o == w || (meets && line_angle_between(other.heading_rad, wall.heading_rad) > radians(45));
-    }
+    const double heading = state.turn + wall.heading_rad;
+    const double across = -std::sin(heading) * (now.b - now.a).x() + std::cos(heading) * (now.b - now.a).y();
+    tense.push_back(std::abs(across) > 3 * std::hypot(params.sigma_wall_turn_rad * wall.length_m,
+                                                      std::sqrt(2.0) * params.sigma_corner_draw_m));
   }
   return tense;
 }

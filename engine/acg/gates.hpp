@@ -13,8 +13,7 @@ namespace smokemap {
 std::vector<double> wall_gates_m(const PlanModel& plan, const std::vector<WallState>& walls,
                                  const std::vector<double>& linked_m, const AcgParams& params);
 
-/// Walls that their links hold in a place that the plan finds hard to believe: turned by more than three sigma, or
-/// longer or shorter by as much, with those that meet one end of such a wall and so hold it.
+/// Walls that their links hold in a place that the plan finds hard to believe: turned by more than three sigma.
 std::vector<bool> tense_walls(const PlanModel& plan, const GraphState& state, const AcgParams& params);
 
 /// Mean over walls of how many squared sigmas their length and direction differ from the drawing.

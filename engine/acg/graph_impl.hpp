@@ -65,10 +65,9 @@ class AutoCompleteGraph::Impl {
   Result<Ok> work_out_sigmas(const SolveInput& last, const PoseGraph& graph, Learnt& learnt) const;
   void put_down(const PlanPlacement& placement, Learnt& learnt) const;
   Result<Ok> take_up(Learnt& learnt, const Progress& progress) const;
-  Result<Ok> release_tense(Learnt& learnt, const SolveInput& input, const std::vector<bool>& tense,
-                           const Progress& progress) const;
+  Result<Ok> release_tense(Learnt& learnt, const SolveInput& input, const Progress& progress) const;
   Result<Ok> round(Learnt& learnt, const std::vector<bool>& use, double sharpness, const PoseRange& free_poses,
-                   const Progress& progress, SolveInput* kept, const std::vector<bool>& close_by = {}) const;
+                   const Progress& progress, SolveInput* kept) const;
   void follow(const GraphState& before, const PoseRange& free_poses, GraphState& state) const;
   SolveInput link(Learnt& learnt, const std::vector<bool>& use, const std::vector<double>& gates, double sharpness,
                   const PoseRange& free_poses) const;

@@ -14,22 +14,15 @@ constexpr double kOtherPlace_m = 0.4;   ///< a line that would move by less is i
 constexpr int kRearrangements = 4;      ///< each may reach as far as LineChain does
 constexpr double kGain = 0.3;           ///< log odds, from which a line has a reason to move
 constexpr double kBetter = 0.005;       ///< of standing; the beliefs have weighed the arrangement itself
-constexpr double kRivalIsIt = 0.5;      ///< probability that a wall's rival is the drawn one
-constexpr double kFoundHere = 4;  ///< odds for the place where rounds of linking have left a line (20 simulated runs)
-constexpr double kDoubt = 0.02;   ///< a probability of another place that is as good as none
-
-/// A search of lines knows nothing of corners, ends and poses that fit as well: what it says, and what that comes to.
-double chance_elsewhere(const LineBelief& belief) {
-  return belief.elsewhere / (belief.elsewhere + kFoundHere * (1 - belief.elsewhere));
-}
+constexpr double kRivalIsIt = 0.3;      ///< probability that a wall's rival is the drawn one
+constexpr double kDoubt = 0.05;         ///< a probability of another place that is as good as none
 
 /// Per line: what the chance adds that it, or the nearest one seen well, is really elsewhere. Lines that nobody saw go
 /// with those; how far they may be from them the normal equations know.
 std::vector<double> doubted_variance(const PlanModel& plan, std::size_t axis, const std::vector<LineBelief>& beliefs,
                                      const std::vector<double>& seen_m) {
   const auto variance = [](const LineBelief& belief) {
-    const double chance = chance_elsewhere(belief);
-    return chance > kDoubt ? chance * belief.apart_m * belief.apart_m : 0;
+    return belief.elsewhere > kDoubt ? belief.elsewhere * belief.apart_m * belief.apart_m : 0;
   };
   std::vector<double> out(plan.lines[axis].size(), 0);
   for (std::size_t k = 0; k < out.size() && !beliefs.empty(); ++k) {

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kTakeUp_m = 3.0;   ///< of way between two rounds while the plan is taken up
 constexpr double kWindow_m = 8.0;   ///< of way whose poses are free meanwhile
-constexpr double kCloseBy_m = 0.2;  ///< gate of a wall that was caught by something else before
 constexpr double kFinest_m = 0.08;  ///< last robust width
 constexpr int kReweights = 2;
 constexpr double kSure = 0.5;         ///< weight of a link that bears out others
@@ -75,11 +74,10 @@ SolveInput AutoCompleteGraph::Impl::link(Learnt& l, const std::vector<bool>& use
 
 /// One round: links with the estimates as they are, then solves with weights that tighten.
 Result<Ok> AutoCompleteGraph::Impl::round(Learnt& l, const std::vector<bool>& use, double sharpness,
-                                          const PoseRange& free_poses, const Progress& progress, SolveInput* kept,
-                                          const std::vector<bool>& close_by) const {
+                                          const PoseRange& free_poses, const Progress& progress,
+                                          SolveInput* kept) const {
   std::vector<double> widths = wall_gates_m(*plan, l.walls, l.linked_m, params);
-  for (std::size_t w = 0; w < widths.size(); ++w)
-    widths[w] = close_by.empty() || !close_by[w] ? widths[w] * l.gate_share : std::min(widths[w], kCloseBy_m);
+  for (double& w : widths) w *= l.gate_share;
   SolveInput input = link(l, use, widths, sharpness, free_poses);
   for (double& w : widths) w *= 0.7 * sharpness;
   for (int k = 0; k < kReweights; ++k) {
@@ -96,18 +94,13 @@ Result<Ok> AutoCompleteGraph::Impl::round(Learnt& l, const std::vector<bool>& us
 
 /// Walls that were caught by something else (furniture before them) go back to where the plan expects them, and may be
 /// linked anew from there.
-Result<Ok> AutoCompleteGraph::Impl::release_tense(Learnt& l, const SolveInput& input, const std::vector<bool>& tense,
-                                                  const Progress& progress) const {
+Result<Ok> AutoCompleteGraph::Impl::release_tense(Learnt& l, const SolveInput& input, const Progress& progress) const {
+  const std::vector<bool> tense = tense_walls(*plan, l.state, params);
   if (std::none_of(tense.begin(), tense.end(), [](bool t) { return t; })) return Ok{};
   SolveInput without = input;
   without.free_poses = {};
-  const auto is_tense = [&](int wall) { return tense[static_cast<std::size_t>(wall)]; };
   for (PieceLink& link : without.links)
-    if (is_tense(link.wall)) link.weight = 0;
-  for (CornerLink& link : without.corners)
-    if (is_tense(link.walls[0]) || is_tense(link.walls[1])) link.weight = 0;
-  for (EndLink& link : without.ends)
-    if (is_tense(link.wall)) link.weight = 0;
+    if (tense[static_cast<std::size_t>(link.wall)]) link.weight = 0;
   return solve(without, params, progress, l.state);
 }
 
@@ -151,8 +144,7 @@ Result<Ok> AutoCompleteGraph::Impl::take_up(Learnt& l, const Progress& progress)
     SolveInput input;
     if (const auto done = round(l, use, 1.0, {}, progress, &input); !done) return done.error();
     if (const auto done = round(l, use, 0.4, window, progress, &input); !done) return done.error();
-    if (const auto done = release_tense(l, input, tense_walls(*plan, l.state, params), progress); !done)
-      return done.error();
+    if (const auto done = release_tense(l, input, progress); !done) return done.error();
     progress.tell(0.6 * l.taken_way_m / std::max(1e-6, all), "taking up the plan");
   }
   return Ok{};

@@ -89,38 +89,6 @@ void hear_start(const PlanModel& plan, const GraphState& state, std::size_t axis
   }
 }
 
-/// Lines for which nothing speaks, those on which only a jamb stands, go with their neighbours: a share of the way
-/// between what these do.
-LineBelief between(const LineBelief& one, const LineBelief& other, double share) {
-  LineBelief out = share < 0.5 ? one : other;
-  out.together.move_m = (1 - share) * one.together.move_m + share * other.together.move_m;
-  out.alone.move_m = (1 - share) * one.alone.move_m + share * other.alone.move_m;
-  return out;
-}
-
-std::vector<LineBelief> arrange_heard(const LineChain& chain) {
-  LineChain heard = chain;
-  heard.drawn_m.clear(), heard.now_m.clear(), heard.support.clear();
-  for (std::size_t k = 0; k < chain.now_m.size(); ++k) {
-    if (std::all_of(chain.support[k].begin(), chain.support[k].end(), [](float s) { return s == 0; })) continue;
-    heard.drawn_m.push_back(chain.drawn_m[k]);
-    heard.now_m.push_back(chain.now_m[k]);
-    heard.support.push_back(chain.support[k]);
-  }
-  if (heard.now_m.empty()) return arrange_lines(chain);
-  const std::vector<LineBelief> beliefs = arrange_lines(heard);
-  std::vector<LineBelief> out;
-  for (const double drawn : chain.drawn_m) {
-    const auto after = static_cast<std::size_t>(std::lower_bound(heard.drawn_m.begin(), heard.drawn_m.end(), drawn) -
-                                                heard.drawn_m.begin());
-    const std::size_t right = std::min(after, beliefs.size() - 1), left = after == 0 ? 0 : after - 1;
-    const double width = heard.drawn_m[right] - heard.drawn_m[left];
-    const double share = width > 0 ? std::clamp((drawn - heard.drawn_m[left]) / width, 0.0, 1.0) : 1;
-    out.push_back(between(beliefs[left], beliefs[right], share));
-  }
-  return out;
-}
-
 }  // namespace
 
 std::array<std::vector<LineBelief>, 2> search_lines(const std::vector<NodeView>& views,
@@ -140,7 +108,7 @@ std::array<std::vector<LineBelief>, 2> search_lines(const std::vector<NodeView>&
     hear_walls(faces, plan, state, axis, holds, chain);
     hear_people(plan, axis, holds, chain);
     hear_start(plan, state, axis, holds, chain);
-    out[axis] = arrange_heard(chain);
+    out[axis] = arrange_lines(chain);
   }
   return out;
 }

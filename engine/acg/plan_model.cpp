@@ -5,7 +5,6 @@
 #include <map>
 #include <numeric>
 #include <optional>
-#include <utility>
 
 #include "geometry/angle.hpp"
 
@@ -15,12 +14,10 @@ namespace {
 constexpr double kDefaultMetresPerPixel = 0.03;
 constexpr double kDoorWidth_m = 0.9;
 constexpr double kLargestGap_m = 2.5;
-constexpr double kInRow = 4;       ///< sigmas of the pen: ends of a wall along a line
-constexpr double kSameLine = 2.0;  ///< sigmas of the pen
 
 PlanEdge make_edge(const std::vector<Point2>& corners, int a, int b, double half_thickness) {
   const Point2 d = corners[static_cast<std::size_t>(b)] - corners[static_cast<std::size_t>(a)];
-  return {a, b, d.norm(), std::atan2(d.y(), d.x()), half_thickness, d.norm() > 0.02, 1};
+  return {a, b, d.norm(), std::atan2(d.y(), d.x()), half_thickness, d.norm() > 0.02};
 }
 
 /// Without a scale: from the drawn doors, if there are enough of them.
@@ -52,68 +49,33 @@ double main_direction(const PlanModel& model) {
   return std::atan2(s, c) / 4;
 }
 
-/// Corners that walls and doors along one line join.
-struct CornerRow {
-  std::vector<std::size_t> corners;
-  double sum = 0;
-  double mean() const { return sum / static_cast<double>(corners.size()); }
-  double mean_variance() const { return 1.0 / static_cast<double>(corners.size()); }
-};
-
-std::vector<CornerRow> corner_rows(const PlanModel& model, int axis, const std::vector<double>& at, double apart_m) {
-  std::vector<std::size_t> root(at.size());
-  std::iota(root.begin(), root.end(), 0u);
-  const auto find = [&](std::size_t i) {
-    while (root[i] != i) i = root[i] = root[root[i]];
-    return i;
-  };
-  for (const auto* edges : {&model.walls, &model.gaps})
-    for (const PlanEdge& e : *edges) {
-      const auto a = static_cast<std::size_t>(e.corner_a), b = static_cast<std::size_t>(e.corner_b);
-      if (e.usable && model.offset_axis(e) == axis && std::abs(at[a] - at[b]) < apart_m) root[find(a)] = find(b);
-    }
-  std::map<std::size_t, CornerRow> rows;
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    CornerRow& row = rows[find(i)];
-    row.corners.push_back(i);
-    row.sum += at[i];
-  }
-  std::vector<CornerRow> out;
-  for (auto& [first, row] : rows) out.push_back(std::move(row));
-  std::stable_sort(out.begin(), out.end(), [](const CornerRow& a, const CornerRow& b) { return a.mean() < b.mean(); });
-  return out;
-}
-
-/// Rows of corners side by side are one line where the pen alone could have set them apart. A free end, a door's jamb,
-/// stands where it stands: beside a line it does not belong to it.
-void find_lines(PlanModel& model, int axis, double sigma_draw_m) {
+/// Corners sorted along the axis; a new line begins where the spread of the current one would exceed the tolerance.
+void find_lines(PlanModel& model, int axis, double tolerance_m) {
   const double heading = model.axis_rad + axis * kPi / 2;
   const Point2 direction(std::cos(heading), std::sin(heading));
   std::vector<double> at;
   for (const Point2& p : model.corners) at.push_back(direction.dot(p));
+  std::vector<std::size_t> order(at.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return at[i] < at[j]; });
   auto& lines = model.lines[static_cast<std::size_t>(axis)];
   auto& line_of = model.line_of_corner[static_cast<std::size_t>(axis)];
   line_of.assign(at.size(), 0);
-  std::vector<CornerRow> merged;
-  for (CornerRow& row : corner_rows(model, axis, at, kInRow * sigma_draw_m)) {
-    const bool free_end = row.corners.size() == 1 && model.degree[row.corners.front()] == 1;
-    const auto same = [&](const CornerRow& line) {
-      return std::abs(row.mean() - line.mean()) <
-             kSameLine * sigma_draw_m * std::sqrt(row.mean_variance() + line.mean_variance());
-    };
-    auto line = free_end ? merged.end() : std::find_if(merged.begin(), merged.end(), same);
-    if (line == merged.end()) {
-      merged.push_back(std::move(row));
-      continue;
+  double first = 0, sum = 0, last = 0;
+  int members = 0;
+  for (const std::size_t i : order) {
+    const bool joins = members > 0 && at[i] - first <= tolerance_m && at[i] - last <= 0.5 * tolerance_m;
+    if (!joins) {
+      lines.push_back(at[i]);
+      first = at[i];
+      sum = 0;
+      members = 0;
     }
-    line->sum += row.sum;
-    line->corners.insert(line->corners.end(), row.corners.begin(), row.corners.end());
-  }
-  std::stable_sort(merged.begin(), merged.end(),
-                   [](const CornerRow& a, const CornerRow& b) { return a.mean() < b.mean(); });
-  for (const CornerRow& line : merged) {
-    for (const std::size_t c : line.corners) line_of[c] = static_cast<int>(lines.size());
-    lines.push_back(line.mean());
+    sum += at[i];
+    ++members;
+    last = at[i];
+    lines.back() = sum / members;
+    line_of[i] = static_cast<int>(lines.size()) - 1;
   }
 }
 
@@ -147,34 +109,6 @@ void find_gaps(PlanModel& model) {
   }
 }
 
-/// From where to where an edge reaches along the axis that it follows.
-std::pair<double, double> reach_m(const PlanModel& model, const PlanEdge& edge, int offset_axis) {
-  const double heading = model.axis_rad + (1 - offset_axis) * kPi / 2;
-  const Point2 along(std::cos(heading), std::sin(heading));
-  return std::minmax({along.dot(model.corners[static_cast<std::size_t>(edge.corner_a)]),
-                      along.dot(model.corners[static_cast<std::size_t>(edge.corner_b)])});
-}
-
-void count_abreast(PlanModel& model) {
-  struct Edge {
-    PlanEdge* edge;
-    int axis;
-    std::pair<double, double> reach;
-  };
-  std::vector<Edge> all;
-  for (auto* edges : {&model.walls, &model.gaps})
-    for (PlanEdge& e : *edges)
-      if (const int axis = model.offset_axis(e); axis >= 0 && e.usable)
-        all.push_back({&e, axis, reach_m(model, e, axis)});
-  for (const Edge& e : all) {
-    double shared = 0;
-    for (const Edge& o : all)
-      if (o.axis == e.axis)
-        shared += std::max(0.0, std::min(e.reach.second, o.reach.second) - std::max(e.reach.first, o.reach.first));
-    e.edge->abreast = std::max(1.0, shared / std::max(1e-6, e.reach.second - e.reach.first));
-  }
-}
-
 }  // namespace
 
 int PlanModel::offset_axis(const PlanEdge& wall) const {
@@ -205,9 +139,8 @@ Result<PlanModel> make_plan_model(const LayoutMap& plan, const AcgParams& params
   if (std::none_of(model.walls.begin(), model.walls.end(), [](const PlanEdge& w) { return w.usable; }))
     return fail(Errc::kDegenerate, "the plan has no wall");
   model.axis_rad = main_direction(model);
+  for (const int axis : {0, 1}) find_lines(model, axis, 4 * params.sigma_corner_draw_m);
   find_gaps(model);
-  for (const int axis : {0, 1}) find_lines(model, axis, params.sigma_corner_draw_m);
-  count_abreast(model);
   return model;
 }
 

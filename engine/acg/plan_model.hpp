@@ -17,13 +17,11 @@ struct PlanEdge {
   double heading_rad = 0;  ///< of a -> b
   double half_thickness_m = 0;
   bool usable = true;  ///< false for a stroke without length
-  double abreast = 1;  ///< walls and gaps of its direction side by side with it, itself included, mean over its length
 };
 
 /// The plan as the solver sees it. Besides its walls it knows the plan's *drawn lines*: along the plan's two main
-/// directions, corners that walls join along the other direction, and rows of such corners that only the pen has set
-/// apart, belong to one line, because somebody drew, or built, them in line. A door's jamb is a line of its own along
-/// its wall: that it was drawn beside another line is chance.
+/// directions, corners that share a coordinate (within a few centimetres) belong to one line, because somebody drew, or
+/// built, them in line.
 struct PlanModel {
   std::vector<Point2> corners;
   std::vector<PlanEdge> walls;  ///< same order as LayoutMap::walls

@@ -28,12 +28,8 @@
 namespace smokemap {
 namespace {
 
-constexpr double kEdgeWidth = 3.0;    ///< sigmas from which SLAM is thought to have slipped
-constexpr double kLinesKnow = 2.5;    ///< times less sure than a wall that no line knows
-constexpr double kOffLine = 0.4;      ///< of the pen's error: how far corners are off the line that they truly share
-constexpr double kShortWall_m = 0.4;  ///< shorter walls are hard to tell from what stands beside them
-constexpr double kShortWallSays_m = 0.06;  ///< one sigma of all that was seen of one
-constexpr double kThinnest_m = 0.02;       ///< strip between two lines
+constexpr double kEdgeWidth = 3.0;  ///< sigmas from which SLAM is thought to have slipped
+constexpr double kLinesKnow = 2.5;  ///< times less sure than a wall that no line knows
 constexpr double kSigmaPin_m = 0.003;
 constexpr double kSigmaMeasured_m = 0.003;
 constexpr double kStartWidth = 2.0;      ///< sigmas from which a person is thought to have pointed elsewhere
@@ -147,11 +143,10 @@ class ProblemBuilder {
     for (const PlanEdge& g : in_.plan->gaps) add_shape(problem, g, 1.5 * stretch_of(g), 1);
   }
 
-  /// The lines across a wall along one of the plan's axes know its stretch already, and walls abreast of it share it:
-  /// counted once for each of them, what nobody saw would look surer than it is.
+  /// The lines across a wall along one of the plan's axes know its stretch already; counted once for each wall between
+  /// the same two lines, it would look surer than it is.
   double stretch_of(const PlanEdge& wall) const {
-    return (in_.plan->offset_axis(wall) >= 0 ? kLinesKnow * std::sqrt(wall.abreast) : 1.0) *
-           params_.sigma_wall_log_length;
+    return (in_.plan->offset_axis(wall) >= 0 ? kLinesKnow : 1.0) * params_.sigma_wall_log_length;
   }
 
   void add_lines(ceres::Problem& problem, int axis) {
@@ -163,52 +158,33 @@ class ProblemBuilder {
     for (std::size_t c = 0; c < line_of.size(); ++c) {
       const auto l = static_cast<std::size_t>(line_of[c]);
       const double offset = even() ? across.dot(in_.plan->even_corners[c]) - drawn[l] : 0;
-      problem.AddResidualBlock(DrawnLineCost::Create(heading, offset, kOffLine * params_.sigma_corner_draw_m),
+      problem.AddResidualBlock(DrawnLineCost::Create(heading, offset, params_.sigma_corner_draw_m),
                                new ceres::CauchyLoss(2.0), corner(static_cast<int>(c)), blocks_.turn(), line(l),
                                blocks_.log_scale());
     }
-    std::vector<double> members(drawn.size(), 0);
-    for (const int l : line_of) members[static_cast<std::size_t>(l)] += 1;
     const double sigma = params_.sigma_wall_log_length;
-    const auto pen = [&](std::size_t k, double width) {
-      return params_.sigma_corner_draw_m *
-             std::sqrt(1 / std::max(1.0, members[k]) + 1 / std::max(1.0, members[k + 1])) / width;
-    };
     for (std::size_t k = 0; k + 1 < drawn.size(); ++k) {
-      const double width = std::max(kThinnest_m, drawn[k + 1] - drawn[k]);
+      const double width = drawn[k + 1] - drawn[k];
       if (k == 0) {
-        problem.AddResidualBlock(StripStretchCost::Create(width, std::hypot(sigma, pen(0, width))), nullptr, line(0),
-                                 line(1), blocks_.log_scale());
+        problem.AddResidualBlock(StripStretchCost::Create(width, sigma), nullptr, line(0), line(1),
+                                 blocks_.log_scale());
         continue;
       }
-      const double before = std::max(kThinnest_m, drawn[k] - drawn[k - 1]), apart = 0.5 * (width + before);
-      // As far as the pen lets one tell the stretch of the strip before.
-      const double told = sigma * sigma / (sigma * sigma + std::pow(pen(k - 1, before), 2));
-      const double correlation = told * std::exp(-apart / (0.6 * params_.stretch_length_m));
-      problem.AddResidualBlock(NeighbourStretchCost::Create(
-                                   before, width, correlation,
-                                   std::hypot(sigma * std::sqrt(1 - correlation * correlation / told), pen(k, width))),
-                               nullptr, line(k - 1), line(k), line(k + 1), blocks_.log_scale());
+      const double before = drawn[k] - drawn[k - 1], apart = 0.5 * (width + before);
+      const double correlation = std::exp(-apart / (0.6 * params_.stretch_length_m));
+      problem.AddResidualBlock(
+          NeighbourStretchCost::Create(before, width, correlation, sigma * std::sqrt(1 - correlation * correlation)),
+          nullptr, line(k - 1), line(k), line(k + 1), blocks_.log_scale());
     }
   }
 
-  /// What is seen beside a stub may be a door leaf or a cupboard, seen from everywhere: all looks together say no more.
-  double sigma_of_link(int wall, double one_m, const std::vector<double>& looks) const {
-    const auto w = static_cast<std::size_t>(wall);
-    return in_.plan->walls[w].length_m < kShortWall_m ? std::max(one_m, kShortWallSays_m * std::sqrt(looks[w])) : one_m;
-  }
-
   void add_evidence(ceres::Problem& problem) {
-    std::vector<double> looks(in_.plan->walls.size(), 0), corner_looks(looks);
-    for (const PieceLink& link : in_.links) looks[static_cast<std::size_t>(link.wall)] += 2 * link.weight;
-    for (const CornerLink& link : in_.corners)
-      for (const int wall : link.walls) corner_looks[static_cast<std::size_t>(wall)] += link.weight;
     for (const PieceLink& link : in_.links) {
       if (link.weight < 1e-3) continue;
       const PlanEdge& wall = in_.plan->walls[static_cast<std::size_t>(link.wall)];
-      problem.AddResidualBlock(PieceToWallCost::Create(link.part_robot, link.side, wall.half_thickness_m,
-                                                       sigma_of_link(link.wall, params_.sigma_point_m, looks)),
-                               weighted(link.weight), pose(link.node), corner(wall.corner_a), corner(wall.corner_b));
+      problem.AddResidualBlock(
+          PieceToWallCost::Create(link.part_robot, link.side, wall.half_thickness_m, params_.sigma_point_m),
+          weighted(link.weight), pose(link.node), corner(wall.corner_a), corner(wall.corner_b));
     }
     for (const EndLink& end : in_.ends)
       if (end.weight > 1e-3)
@@ -216,11 +192,8 @@ class ProblemBuilder {
                                  weighted(end.weight), pose(end.node), corner(end.corner), corner(end.other_corner));
     for (const CornerLink& c : in_.corners)
       if (c.weight > 1e-3)
-        problem.AddResidualBlock(
-            CornerCost::Create(c.seen_robot, c.offset_map,
-                               std::max(sigma_of_link(c.walls[0], params_.sigma_seen_corner_m, corner_looks),
-                                        sigma_of_link(c.walls[1], params_.sigma_seen_corner_m, corner_looks))),
-            weighted(c.weight), pose(c.node), corner(c.corner));
+        problem.AddResidualBlock(CornerCost::Create(c.seen_robot, c.offset_map, params_.sigma_seen_corner_m),
+                                 weighted(c.weight), pose(c.node), corner(c.corner));
   }
 
   /// What people say is never weighted down.

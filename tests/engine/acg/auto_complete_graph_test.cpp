@@ -27,26 +27,6 @@ MergedMap merge_all(const MergeProblem& problem) {
   return std::move(*merged);
 }
 
-/// What most questions are asked about is made and merged once.
-const MergeProblem& whole_problem() {
-  static const MergeProblem problem = make_merge_problem(corridor_building(), {});
-  return problem;
-}
-const MergedMap& whole_merged() {
-  static const MergedMap merged = merge_all(whole_problem());
-  return merged;
-}
-
-/// The first rooms of a way through the building: enough where people have their say.
-const MergeProblem& short_problem() {
-  static const MergeProblem problem = [] {
-    MergeProblemParams params;
-    params.max_stops = 5;
-    return make_merge_problem(corridor_building(), params);
-  }();
-  return problem;
-}
-
 std::vector<double> corner_errors(const MergeProblem& problem, const MergedMap& merged, bool seen) {
   std::vector<double> errors;
   for (std::size_t i = 0; i < merged.corners.size(); ++i)
@@ -108,7 +88,8 @@ TEST(AutoCompleteGraph, CorrectsTheRobotsDriftByThePlan) {
 }
 
 TEST(AutoCompleteGraph, GivesTheSameAnswerTwice) {
-  const MergedMap &one = whole_merged(), two = merge_all(whole_problem());
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
+  const MergedMap one = merge_all(problem), two = merge_all(problem);
   ASSERT_EQ(one.walls.size(), two.walls.size());
   for (std::size_t i = 0; i < one.walls.size(); ++i) EXPECT_EQ(one.walls[i].segment_map.a, two.walls[i].segment_map.a);
   for (std::size_t i = 0; i < one.corners.size(); ++i) EXPECT_EQ(one.corners[i].sigma_m, two.corners[i].sigma_m);
@@ -149,7 +130,7 @@ TEST(AutoCompleteGraph, AddsWallsThatThePlanLacks) {
 }
 
 TEST(AutoCompleteGraph, TakesBackWhatItThoughtOfAWallWhenAPersonSaysOtherwise) {
-  const MergeProblem& problem = short_problem();
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
   AutoCompleteGraph acg;
   ASSERT_THAT(acg.set_plan(problem.plan, problem.start), IsOk());
   const auto state_of = [&](std::size_t w) { return acg.update(problem.graph)->walls[w].state; };
@@ -165,7 +146,7 @@ TEST(AutoCompleteGraph, TakesBackWhatItThoughtOfAWallWhenAPersonSaysOtherwise) {
 }
 
 TEST(AutoCompleteGraph, HoldsAPinnedCornerAndAMeasuredWallWhateverSensorsSay) {
-  const MergeProblem& problem = short_problem();
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
   AutoCompleteGraph acg;
   ASSERT_THAT(acg.set_plan(problem.plan, problem.start), IsOk());
   const MergedMap before = *acg.update(problem.graph);
@@ -193,7 +174,7 @@ TEST(AutoCompleteGraph, HoldsAPinnedCornerAndAMeasuredWallWhateverSensorsSay) {
 }
 
 TEST(AutoCompleteGraph, RefusesWordsAboutWhatThePlanDoesNotHave) {
-  const MergeProblem& problem = whole_problem();
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
   AutoCompleteGraph acg;
   EXPECT_THAT(acg.pin_corner(0, Point2(0, 0)), Fails(Errc::kNotFound));
   ASSERT_THAT(acg.set_plan(problem.plan, problem.start), IsOk());
@@ -204,8 +185,8 @@ TEST(AutoCompleteGraph, RefusesWordsAboutWhatThePlanDoesNotHave) {
 }
 
 TEST(AutoCompleteGraph, ShowsItsLinksAndKeepsThemRight) {
-  const MergeProblem& problem = whole_problem();
-  const MergedMap& merged = whole_merged();
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
+  const MergedMap merged = merge_all(problem);
   int kept = 0, right = 0;
   for (const MapLink& link : merged.links) {
     if (link.state != LinkState::kKept) continue;
@@ -258,7 +239,7 @@ TEST(AutoCompleteGraph, GrowsWithTheGraphAndNeverTurnsAWallWildly) {
 }
 
 TEST(AutoCompleteGraph, AlignsByTwoPairsWithoutAStart) {
-  const MergeProblem& problem = whole_problem();
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
   AutoCompleteGraph acg;
   ASSERT_THAT(acg.set_plan(problem.plan), IsOk());
   const std::size_t last = problem.plan.corners.size() - 1;
@@ -271,7 +252,7 @@ TEST(AutoCompleteGraph, AlignsByTwoPairsWithoutAStart) {
 }
 
 TEST(AutoCompleteGraph, BelievesAPersonsPairMoreThanSensorsAndShowsTheResidual) {
-  const MergeProblem& problem = short_problem();
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
   AutoCompleteGraph acg;
   ASSERT_THAT(acg.set_plan(problem.plan, problem.start), IsOk());
   const MergedMap before = *acg.update(problem.graph);
@@ -291,7 +272,7 @@ TEST(AutoCompleteGraph, BelievesAPersonsPairMoreThanSensorsAndShowsTheResidual) 
 }
 
 TEST(AutoCompleteGraph, LeavesOutAPairThatContradictsTheOthersAndFlagsIt) {
-  const MergeProblem& problem = whole_problem();
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
   AutoCompleteGraph acg;
   ASSERT_THAT(acg.set_plan(problem.plan), IsOk());
   const std::size_t last = problem.plan.corners.size() - 1;
@@ -323,7 +304,7 @@ TEST(AutoCompleteGraph, WithoutAPlanHandsOnTheTrajectoryAndSensedWalls) {
 }
 
 TEST(AutoCompleteGraph, SaysThatThePlanOfAnotherBuildingDoesNotFit) {
-  const MergeProblem& problem = whole_problem();
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
   const MergeProblem other = make_merge_problem(slanted_building(), {});
   AutoCompleteGraph acg;
   ASSERT_THAT(acg.set_plan(other.plan, other.start), IsOk());
@@ -334,8 +315,8 @@ TEST(AutoCompleteGraph, SaysThatThePlanOfAnotherBuildingDoesNotFit) {
 }
 
 TEST(AutoCompleteGraph, SurvivesAMirroredPlanAndAPlanOfOneWall) {
-  MergeProblem problem = whole_problem();
-  const double right_fit = whole_merged().fit.score;
+  MergeProblem problem = make_merge_problem(corridor_building(), {});
+  const double right_fit = merge_all(problem).fit.score;
   for (LayoutCorner& c : problem.plan.corners) c.p_px.x() = problem.plan.width_px - c.p_px.x();
   const MergedMap mirrored = merge_all(problem);
   EXPECT_TRUE(all_finite(mirrored));
@@ -347,7 +328,7 @@ TEST(AutoCompleteGraph, SurvivesAMirroredPlanAndAPlanOfOneWall) {
 }
 
 TEST(AutoCompleteGraph, StopsWhenAskedAndIsAsBefore) {
-  const MergeProblem& problem = short_problem();
+  const MergeProblem problem = make_merge_problem(corridor_building(), {});
   AutoCompleteGraph acg;
   ASSERT_THAT(acg.set_plan(problem.plan, problem.start), IsOk());
   std::stop_source stop;

@@ -89,25 +89,6 @@ TEST(Tension, IsSharedByAllWallsAndInSquaredSigmas) {
   }
 }
 
-// Cupboards before two halves of an outer wall bent both by nine degrees; a jamb was pushed onto the next.
-TEST(Tension, IsFeltByAWallThatWasSquashedAndByThoseThatHoldItsEnds) {
-  PlanModel plan;
-  plan.corners = {{0, 0}, {2, 0}, {2, 3}, {5, 0}};
-  const auto wall = [&](int a, int b) {
-    const Segment2 s{plan.corners[static_cast<std::size_t>(a)], plan.corners[static_cast<std::size_t>(b)]};
-    plan.walls.push_back({a, b, s.length(), s.heading(), 0.05, true});
-  };
-  wall(0, 1), wall(1, 2), wall(1, 3);
-  GraphState state;
-  for (const Point2& p : plan.corners) state.corners.push_back({p.x(), p.y()});
-  EXPECT_EQ(tense_walls(plan, state, {}), (std::vector<bool>{false, false, false}));
-  const double sigma = std::hypot(0.2, std::sqrt(2.0) * 0.05);
-  for (const double sigmas : {2.9, 3.1}) {
-    for (const int c : {1, 2}) state.corners[static_cast<std::size_t>(c)][0] = 2 - sigmas * sigma;
-    EXPECT_EQ(tense_walls(plan, state, {}), (std::vector<bool>{sigmas > 3, sigmas > 3, false})) << sigmas;
-  }
-}
-
 TEST(SeenOnLines, AddsUpTheConfirmedWallsThatRunAlongALine) {
   const PlanModel plan = upright_walls({0, 2, 5});
   using enum WallState;

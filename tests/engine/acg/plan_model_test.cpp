@@ -58,50 +58,6 @@ TEST(PlanModel, FindsTheDrawnLinesWhateverTheTurnOfTheSheet) {
   }
 }
 
-/// Two upright walls of 3 m, the second 6 m farther on and `apart_m` to the right; in the first a door from 1 to 2 m.
-LayoutMap two_rows(double apart_m) {
-  LayoutMap plan;
-  plan.width_px = plan.height_px = 1400;
-  plan.scale = LayoutScale{0.01, 0.05, true};
-  for (const Point2& p :
-       {Point2(0, 0), Point2(0, 1), Point2(0, 2), Point2(0, 3), Point2(apart_m, 9), Point2(apart_m, 12)})
-    plan.corners.push_back({plan.frame().to_pixels(p + Point2(1, 1)), 0, 1});
-  for (const int a : {0, 2, 4}) plan.walls.push_back({a, a + 1, 15, 1, false});
-  return plan;
-}
-
-TEST(PlanModel, PutsRowsOfCornersOnOneLineOnlyWhereThePenAloneCouldHaveSetThemApart) {
-  for (const double apart : {0.0, 0.05, 0.15, 0.3}) {
-    const auto plan = make_plan_model(two_rows(apart), {});
-    ASSERT_THAT(plan, IsOk());
-    const auto& line_of = plan->line_of_corner[static_cast<std::size_t>(plan->offset_axis(plan->walls[0]))];
-    EXPECT_EQ(line_of[0], line_of[3]) << "walls and a door join them";
-    EXPECT_EQ(line_of[0] == line_of[4], apart < 0.1) << apart;
-    EXPECT_EQ(line_of[4], line_of[5]);
-  }
-}
-
-TEST(PlanModel, LetsADoorsJambStandAloneAlongItsWallHoweverNearAnotherLineItWasDrawn) {
-  const auto plan = make_plan_model(two_rooms(), {});  // jambs at y = 2 and 3
-  ASSERT_THAT(plan, IsOk());
-  LayoutMap beside = two_rooms();
-  beside.corners[5].p_px.y() = beside.corners[0].p_px.y() - 8;  // 8 cm from the line of the lower outer wall
-  const auto moved = make_plan_model(beside, {});
-  ASSERT_THAT(moved, IsOk());
-  EXPECT_EQ(moved->lines[1].size(), plan->lines[1].size());
-  EXPECT_NE(moved->line_of_corner[1][5], moved->line_of_corner[1][0]);
-}
-
-TEST(PlanModel, CountsHowManyWallsStandAbreast) {
-  const auto plan = make_plan_model(two_rooms(), {});
-  ASSERT_THAT(plan, IsOk());
-  for (const PlanEdge& wall : plan->walls) {
-    EXPECT_GE(wall.abreast, 1);
-    EXPECT_LE(wall.abreast, plan->offset_axis(wall) == 0 ? 3.01 : 2.01) << "three upright rows, two level ones";
-  }
-  EXPECT_NEAR(plan->walls[2].abreast, 3, 0.05);  // an outer wall: the other one, and door and pieces of the inner
-}
-
 TEST(PlanModel, TakesADoorForAGapBetweenTwoFreeEnds) {
   const auto plan = make_plan_model(two_rooms(), {});
   ASSERT_EQ(plan->gaps.size(), 1u);

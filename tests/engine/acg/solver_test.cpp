@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "acg/association.hpp"
-#include "acg/plan_model.hpp"
 #include "core/random.hpp"
 #include "tests/support/result_matchers.hpp"
 
@@ -158,76 +157,6 @@ TEST(CornerSigmas, ShrinkWithEvidenceAndAreLargeWhereNothingWasSeen) {
   }
   SolveInput nothing;
   EXPECT_THAT(sigmas_at(nothing, {}, GraphState{}), IsOk());
-}
-
-// A door leaf before a stub of 26 cm was taken for it from thirty places: 24 cm off, and said to be 1 cm.
-TEST(CornerSigmas, OfAStubStayWideHoweverOftenSomethingWasSeenBesideIt) {
-  for (const double length : {0.26, 2.0}) {
-    PlanModel plan;
-    plan.corners = {{0, 0}, {length, 0}};
-    plan.walls.push_back({0, 1, length, 0, 0.05, true});
-    plan.degree = {1, 1};
-    plan.lines = {std::vector<double>{0, length}, std::vector<double>{0}};
-    plan.line_of_corner = {std::vector<int>{0, 1}, std::vector<int>{0, 0}};
-    GraphState state;
-    state.corners = {{0, 0}, {length, 0}};
-    state.lines = plan.lines;
-    SolveInput input;
-    input.plan = &plan;
-    input.wall_firmness = {1};
-    for (std::size_t node = 0; node < 30; ++node) {
-      state.poses.push_back({0, 2, 0});
-      PieceLink link;
-      link.node = node;
-      link.part_robot = {Point2(0, -1.95), Point2(length, -1.95)};
-      input.links.push_back(link);
-    }
-    for (const int corner : {0, 1}) {  // its ends are known along it
-      EndLink end;
-      end.corner = corner, end.other_corner = 1 - corner;
-      end.end_robot = Point2(corner * length, -1.95);
-      end.sigma_m = 0.001;
-      input.ends.push_back(end);
-    }
-    const auto sigmas = sigmas_at(input, {}, state);
-    ASSERT_THAT(sigmas, IsOk());
-    SolveInput once = input;
-    once.links.resize(1);
-    const auto first = sigmas_at(once, {}, state);
-    ASSERT_THAT(first, IsOk());
-    EXPECT_EQ(sigmas->corners_m[0] > 0.99 * first->corners_m[0], length < 0.4) << length;
-  }
-}
-
-// What nobody saw looked the surer the more walls were drawn beside each other: .22 m said at 1.08 m off.
-TEST(CornerSigmas, AreTheSameHoweverManyWallsCrossTheStripThatNobodySaw) {
-  std::vector<double> far_m;
-  for (const int walls : {2, 8}) {
-    LayoutMap layout;
-    layout.width_px = layout.height_px = 2000;
-    layout.scale = LayoutScale{0.01, 0.001, true};
-    for (int w = 0; w < walls; ++w) {
-      for (const double x : {1.0, 11.0}) layout.corners.push_back({Point2(100 * x, 100 + 200 * w), 0, 1});
-      layout.walls.push_back({2 * w, 2 * w + 1, 15, 1, false});
-    }
-    layout.corners.push_back({Point2(1100, 1900), 0, 1});
-    layout.walls.push_back({2 * walls - 1, 2 * walls, 15, 1, false});  // a wall across, at the far end
-    for (int w = 0; w + 1 < walls; ++w) layout.walls.push_back({2 * w + 1, 2 * w + 3, 15, 1, false});
-    const auto plan = make_plan_model(layout, {});
-    ASSERT_THAT(plan, IsOk());
-    GraphState state;
-    for (const Point2& p : plan->corners) state.corners.push_back({p.x(), p.y()});
-    state.lines = plan->lines;
-    SolveInput input;
-    input.plan = &*plan;
-    input.wall_firmness.assign(plan->walls.size(), 1);
-    for (int w = 0; w < walls; ++w) input.pins.push_back({2 * w, plan->corners[static_cast<std::size_t>(2 * w)]});
-    const auto sigmas = sigmas_at(input, {}, state);
-    ASSERT_THAT(sigmas, IsOk());
-    far_m.push_back(sigmas->corners_m[1]);
-  }
-  EXPECT_NEAR(far_m[1], far_m[0], 0.25 * far_m[0]);
-  EXPECT_GT(far_m[1], 0.3) << "ten metres of a plan that is stretched by ten percent over four metres at a time";
 }
 
 // A robot that had driven through smoke for a minute said 5 cm at .3 m: what drift left on the way was not counted.

@@ -73,13 +73,6 @@ TEST(LinkPieces, CutsAPieceAtTheWallsEnd) {
   EXPECT_LT(reach, 8.3);
 }
 
-TEST(LinkPieces, TakesNoPaneInAGapForTheStubBesideIt) {
-  LongWall wall;
-  wall.state.corners = {{0, 0}, {0.4, 0}};  // beside it a gap, closed by a pane that lies 18 cm deeper
-  EXPECT_TRUE(links_of(wall, Pose2(0.5, 3, 0), {{0.3, -0.08}, {1.4, -0.08}}, 0.5).empty());
-  EXPECT_EQ(links_of(wall, Pose2(0.5, 3, 0), {{0.05, 0.1}, {1.4, 0.1}}, 0.5).size(), 1u) << "a door, shut, in one face";
-}
-
 TEST(LinkedLength, CountsOnlyWhatTwoNodesSay) {
   LongWall wall;
   wall.state.poses = {{2, 2, 0}, {4, 2, 0}};
