@@ -15,9 +15,10 @@ constexpr int kRebuildEveryNodes = 10;
 constexpr double kScoreMemory = 0.1;  ///< share of the newest score in the usual one
 constexpr double kUsualShare = 0.6;
 constexpr double kScoreGain = 0.02;  ///< by how much a place that was searched for has to fit better ...
-/// ... and by how much for every squared sigma that it is less likely than the place next to the prediction: one in ten
-/// of 180 points tells something of its own (GraphParams::pair_information), two nats each. Without it a scan that
-/// looks ahead slips back along a corridor, to where more of it is on the map.
+/// ... and, where the place next to the prediction fits well, by how much for every squared sigma that it is less
+/// likely than that: one in ten of 180 points tells something of its own (GraphParams::pair_information), two nats
+/// each. Without it a scan that looks ahead slips back along a corridor, to where more of it is on the map. Where
+/// nothing near the prediction fits, the wheels were wrong, and their errors have heavy tails.
 constexpr double kScorePerSquaredSigma = 1.0 / 72;
 
 Eigen::Matrix3d spread(const PredictedStep& step) {
@@ -124,9 +125,11 @@ ScanAlignment FrontEnd::search(const std::vector<SurfacePoint>& surface, const P
   PosePrior loose = prior;
   loose.information *= 0.25;
   const ScanAlignment refined = align(surface, map_, found->T_map_robot, params_.align, loose);
-  const double less_likely = squared_sigmas(refined.T_map_robot, prior) - squared_sigmas(so_far.T_map_robot, prior);
-  return refined.score > so_far.score + kScoreGain + kScorePerSquaredSigma * std::max(0.0, less_likely) ? refined
-                                                                                                        : so_far;
+  double gain = kScoreGain;
+  if (so_far.score >= params_.front_end.good_score)
+    gain += kScorePerSquaredSigma *
+            std::max(0.0, squared_sigmas(refined.T_map_robot, prior) - squared_sigmas(so_far.T_map_robot, prior));
+  return refined.score > so_far.score + gain ? refined : so_far;
 }
 
 bool FrontEnd::far_from_last_node() const {

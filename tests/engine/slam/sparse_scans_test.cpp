@@ -57,5 +57,27 @@ TEST(SparseScans, DoNotSlipBackToWhatTheMapKnows) {
                                  << ": matching the part that is known better was worth more than the wheels";
 }
 
+/// Wheels that jolt: the next place is many sigmas from where they say, and the map knows better.
+TEST(DenseScans, AreBelievedAgainstWheelsThatJolt) {
+  std::mt19937_64 random(4);
+  const auto walls = test::ring_of_corridors();
+  Slam slam(SlamParams{});
+  Pose2 T_odom, last;
+  double seconds = 0;
+  int scans = 0;
+  for (const Pose2& at : test::rounds(1, 0.1)) {
+    if (scans > 0) T_odom = T_odom * (last.inverse() * at);
+    if (++scans % 25 == 0) T_odom = T_odom * Pose2(0, 0, scans % 2 == 0 ? 0.3 : -0.3);
+    last = at;
+    slam.add_odometry({from_seconds(seconds), "robot", T_odom, 0, 0});
+    ASSERT_TRUE(slam.add_scan(test::scan_at(walls, at, seconds, random)));
+    const Pose2 truth = Pose2(1, 1, 0).inverse() * at;
+    const Pose2 off = truth.inverse() * slam.latest_pose().T_map_robot;
+    ASSERT_LT(off.translation().norm(), 0.25) << "scan " << scans;
+    ASSERT_LT(std::abs(off.heading()), 0.1) << "scan " << scans;
+    seconds += 0.2;
+  }
+}
+
 }  // namespace
 }  // namespace smokemap
