@@ -10,8 +10,7 @@ cv::Mat clearance_image(const cv::Mat& free_space);
 
 /// Local thickness: for every free pixel the radius of the largest disc inside free space that covers it. CV_32FC1.
 /// Constant along a corridor and across a room, so that a step of it is a door or a mouth. (MAORIS calls it fuzzy
-/// opening.) Cost: one step a pixel, and
-/// one for each row of each disc on the ridge of `clearance`.
+/// opening.) Cost: one step a pixel, and one for each row of each disc on the ridge of `clearance`.
 cv::Mat local_thickness(const cv::Mat& clearance);
 
 /// The same in whole pixels as MAORIS has it: discs of one pixel less than the clearance of their centres, each painted

@@ -5,6 +5,7 @@
 
 #include "core/random.hpp"
 #include "simulation/lidar.hpp"
+#include "tests/support/half_turn_lidar.hpp"
 
 namespace smokemap::bench {
 namespace {
@@ -181,16 +182,6 @@ void add_relations(LongLog& log) {
   log.relations.insert(log.relations.end(), log.revisits.begin(), log.revisits.end());
 }
 
-LidarParams half_turn_lidar() {
-  LidarParams lidar;
-  lidar.beams = 180;
-  lidar.angle_min_rad = -0.5 * kPi;
-  lidar.field_of_view_rad = kPi;
-  lidar.range_max_m = 30;
-  lidar.skew = false;
-  return lidar;
-}
-
 /// Where somebody is who walks 1.5 m and more before the robot, each a metre before the last, left and right in turn.
 Point2 person_at(const Trajectory& poses, std::size_t k, int person) {
   const auto ahead = static_cast<std::size_t>((1.5 + person) / kScanEvery_m);
@@ -216,7 +207,7 @@ LongLog long_log(std::uint64_t seed, double way_m, const LongLogKind& kind) {
   std::mt19937_64 random(seed);
   const Site site = SiteBuilder(random, kind.alike).take();
   const SegmentWorld world(site.walls);
-  const LidarParams lidar = half_turn_lidar();
+  const LidarParams lidar = test::half_turn_lidar();
   const Trajectory poses = poses_along(walk(site, way_m, random));
   LongLog log;
   const double scale = 1 + normal(random, 0.01), bend = normal(random, 0.004);

@@ -6,6 +6,7 @@
 #include "simulation/lidar.hpp"
 #include "slam/slam.hpp"
 #include "tests/engine/slam/toy_world.hpp"
+#include "tests/support/half_turn_lidar.hpp"
 
 namespace smokemap {
 namespace {
@@ -33,12 +34,7 @@ SegmentWorld corridor_with_pillars(std::mt19937_64& random) {
 double off_m(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const SegmentWorld world = corridor_with_pillars(random);
-  LidarParams lidar;
-  lidar.beams = 180;
-  lidar.angle_min_rad = -0.5 * kPi;
-  lidar.field_of_view_rad = kPi;
-  lidar.range_max_m = 30;
-  lidar.skew = false;
+  const LidarParams lidar = test::half_turn_lidar();
   test::Wheels wheels(1.0, 0, 0.02, seed);
   Slam slam(SlamParams{});
   double x = 0;
